@@ -1,0 +1,2 @@
+//! The kavics command.
+fn main() {}

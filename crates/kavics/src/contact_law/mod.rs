@@ -1,0 +1,207 @@
+//! Contact laws: force, tangent and memory of one contact. No grain, no loop, no file.
+//!
+//! In: a relative displacement, the stiffness of the contact, its memory and phase. Out: force, secant and
+//! tangent, and what it will remember. Signs as in theory: opening and tension positive, rotation
+//! counter-clockwise. Bojtár & Bagi (1989), eqs. 20–22.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ids::PropertyId;
+
+/// Relative displacement at a contact, second partner less first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RelativeDisplacement {
+    /// Opening v_n, `[length]`.
+    pub normal: f64,
+    /// Shear v_t, `[length]`.
+    pub shear: f64,
+    /// Relative rotation v_φ, dimensionless.
+    pub rotation: f64,
+}
+
+/// Force that a contact carries, per thickness of the assembly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactForce {
+    /// Normal force N, tension positive, `[force]`.
+    pub normal: f64,
+    /// Shear force T, `[force]`.
+    pub shear: f64,
+    /// Bending moment M, `[force·length]`.
+    pub moment: f64,
+}
+
+/// How a contact carries what it carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Phase {
+    /// A bond that holds, or a contact that is closed and does not slide.
+    #[default]
+    Closed,
+    /// Slides with a positive shear force.
+    SlidingForward,
+    /// Slides with a negative shear force.
+    SlidingBackward,
+    /// Carries nothing, and may close again.
+    Open,
+}
+
+/// What a contact is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactGeometry {
+    /// Dual length on the side of −t and of +t of the contact point, `[length]`.
+    pub dual_parts: [f64; 2],
+    /// Branch length l, `[length]`.
+    pub branch_length: f64,
+    /// Thickness of the assembly, `[length]`.
+    pub thickness: f64,
+}
+
+/// Where the stiffness of a contact comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StiffnessRule {
+    /// A layer along the dual edge, the source's eq. 21: k = E·s, G·s, E·s³/12; moduli in `[force/length³]`.
+    Layer {
+        /// Normal modulus E.
+        normal: f64,
+        /// Shear modulus G₀.
+        shear: f64,
+    },
+    /// A continuum modulus: k = E·s/l, G·s/l, E·s³/(12·l); moduli in `[force/length²]`.
+    Modulus {
+        /// Normal modulus E.
+        normal: f64,
+        /// Shear modulus G₀.
+        shear: f64,
+    },
+    /// The numbers themselves.
+    Direct {
+        /// k_n, `[force/length]`.
+        normal: f64,
+        /// k_t, `[force/length]`.
+        shear: f64,
+        /// k_m, `[force·length]`.
+        moment: f64,
+    },
+}
+
+/// How the printed law, in which the shear modulus depends on the opening, is read (theory: it has no potential).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reading {
+    /// As printed: a secant law without potential.
+    #[default]
+    Printed,
+    /// The hyperelastic twin: the same shear force, and the thrust that makes the work path-independent.
+    Potential,
+    /// The shear force is remembered and grows by increments; closed cycles dissipate.
+    History,
+}
+
+/// Limits of the force components, as stress over the dual edge or as force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strength {
+    /// Whether the limits are stresses (N: σ·s, T: τ·s, M: σ·s²/6) or the forces themselves.
+    pub kind: StrengthKind,
+    /// Limit of tension.
+    pub tension: f64,
+    /// Limit of compression.
+    pub compression: f64,
+    /// Limit of shear.
+    pub shear: f64,
+    /// Limit of bending.
+    pub bending: f64,
+}
+
+/// What the limits of a [`Strength`] are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrengthKind {
+    /// Stresses, `[force/length²]`.
+    Stress,
+    /// Forces `[force]`, and for bending a moment `[force·length]`.
+    Force,
+}
+
+impl Strength {
+    /// Never fails.
+    pub const UNBREAKABLE: Self = Self {
+        kind: StrengthKind::Force,
+        tension: f64::INFINITY,
+        compression: f64::INFINITY,
+        shear: f64::INFINITY,
+        bending: f64::INFINITY,
+    };
+}
+
+/// The component of the contact force that broke a bond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Normal force, opening.
+    Tension,
+    /// Normal force, closing.
+    Compression,
+    /// Shear force.
+    Shear,
+    /// Bending moment.
+    Bending,
+}
+
+/// A bonded contact: normal force, shear force and moment; breaks when a component exceeds its limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cemented {
+    /// Stiffness.
+    pub stiffness: StiffnessRule,
+    /// Factor μ of the source, by which compression stiffens shear: G = G₀ − μ·E·v_n/s, dimensionless.
+    pub shear_hardening: f64,
+    /// How the law with μ ≠ 0 is read.
+    pub reading: Reading,
+    /// Share of G₀ below which G does not fall; none: G ≤ 0 ends the step.
+    pub shear_floor: Option<f64>,
+    /// Whether the contact point's place on the dual edge couples normal force and bending.
+    pub eccentric: bool,
+    /// Limits.
+    pub strength: Strength,
+    /// What a broken bond becomes; none: nothing.
+    pub after_breakage: Option<PropertyId>,
+}
+
+/// A cohesionless contact: compression and shear only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cohesionless {
+    /// Stiffness; the moment part is not used.
+    pub stiffness: StiffnessRule,
+    /// Factor μ of the source, as for cement.
+    pub shear_hardening: f64,
+    /// How the law with μ ≠ 0 is read.
+    pub reading: Reading,
+    /// Share of G₀ below which G does not fall.
+    pub shear_floor: Option<f64>,
+    /// Coulomb friction coefficient; none: the law as printed, eq. 22.
+    pub friction: Option<f64>,
+}
+
+/// A contact law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Law {
+    /// Cement.
+    Cemented(Cemented),
+    /// No cement.
+    Cohesionless(Cohesionless),
+}
+
+impl Law {
+    /// The law's name in scene file and results.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Cemented(_) => "cemented",
+            Self::Cohesionless(_) => "cohesionless",
+        }
+    }
+}
+
+/// A contact property: a law with numbers and a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Property {
+    /// Name in the scene.
+    pub name: String,
+    /// The law.
+    pub law: Law,
+}

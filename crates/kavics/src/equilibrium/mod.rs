@@ -1,0 +1,242 @@
+//! Equilibrium of an assembly under given loads: kinematics, residual, tangent, Newton, linear solver.
+//!
+//! In: an assembly, contact states, loads and prescribed displacements. Out: displacements and contact forces.
+
+mod error;
+
+pub use error::SolveError;
+
+use crate::contact_law::{ContactForce, Mode, Phase, RelativeDisplacement};
+use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};
+
+/// Displacement of a grain or side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Displacement {
+    /// To the right, `[length]`.
+    pub x: f64,
+    /// Upwards, `[length]`.
+    pub y: f64,
+    /// Rotation, counter-clockwise, dimensionless.
+    pub rotation: f64,
+}
+
+/// Load on a grain or side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// To the right, `[force]`.
+    pub x: f64,
+    /// Upwards, `[force]`.
+    pub y: f64,
+    /// Moment about the reference point, counter-clockwise, `[force·length]`.
+    pub moment: f64,
+}
+
+/// A freedom of a grain or side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Freedom {
+    /// Displacement to the right.
+    X,
+    /// Displacement upwards.
+    Y,
+    /// Rotation.
+    Rotation,
+}
+
+/// Which stiffness the iteration uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Iteration {
+    /// The secant Q/v: symmetric, LDLᵀ.
+    #[default]
+    Secant,
+    /// The tangent ∂Q/∂v: unsymmetric in general, LU.
+    Tangent,
+}
+
+/// How equilibria are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Bound on the residual.
+    pub tolerance: f64,
+    /// Which stiffness the iteration uses.
+    pub iteration: Iteration,
+    /// Relative difference of utilisations below which contacts break together.
+    pub tie_tolerance: f64,
+    /// Whether the iterates are kept beside the equilibria.
+    pub keep_iterates: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            iteration: Iteration::Secant,
+            tie_tolerance: 1e-9,
+            keep_iterates: false,
+        }
+    }
+}
+
+/// What has happened to a grain or contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Iteration of the load step after which it happened.
+    pub iteration: usize,
+    /// Load factor at which it happened.
+    pub load_factor: f64,
+    /// What it happened to, and what.
+    pub kind: EventKind,
+}
+
+/// The kinds of events.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EventKind {
+    /// A bond broke.
+    Broke {
+        /// Which.
+        contact: ContactId,
+        /// The component that exceeded its limit.
+        mode: Mode,
+        /// Energy that the bond itself held less what its successor holds, `[force·length]`.
+        fracture_energy: f64,
+        /// Energy set free beyond that at fixed load, `[force·length]`.
+        release_energy: f64,
+    },
+    /// A contact opened.
+    Opened(ContactId),
+    /// A contact closed.
+    Closed(ContactId),
+    /// A contact began to slide.
+    Slid(ContactId),
+    /// A sliding contact stuck.
+    Stuck(ContactId),
+    /// A grain that nothing holds and nothing loads was set aside.
+    SetAside(GrainId),
+    /// A grain that had been set aside is held or loaded again.
+    TakenBack(GrainId),
+}
+
+/// The contact as it stands in a state of the assembly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactState {
+    /// Relative displacement.
+    pub displacement: RelativeDisplacement,
+    /// Force.
+    pub force: ContactForce,
+    /// Its property now; none: broken into nothing.
+    pub property: Option<PropertyId>,
+    /// Whether a bond of it has broken.
+    pub broken: bool,
+    /// How it carries.
+    pub phase: Phase,
+}
+
+impl ContactState {
+    /// Whether the contact can carry a force in this state.
+    pub fn is_active(&self) -> bool {
+        self.property.is_some() && self.phase != Phase::Open
+    }
+}
+
+/// Displacements and contacts of the assembly, in equilibrium or on the way to it.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    /// Displacement of each grain and side.
+    pub displacements: PerBody<Displacement>,
+    /// Each contact.
+    pub contacts: PerContact<ContactState>,
+}
+
+/// Work and energy since the start of the run, `[force·length]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Work of loads and moves.
+    pub external_work: f64,
+    /// Energy that the contacts hold now.
+    pub elastic_energy: f64,
+    /// Energy of bonds at the moment they broke.
+    pub fracture_energy: f64,
+    /// Work of friction.
+    pub friction_work: f64,
+    /// Work that a law without potential took (positive) or gave (negative).
+    pub nonpotential_work: f64,
+    /// Energy set free at breakage beyond the bond's own.
+    pub release_energy: f64,
+}
+
+impl Energy {
+    /// External work less all it went into: zero but for the straight lines between equilibria.
+    pub fn ledger_error(&self) -> f64 {
+        self.external_work
+            - self.elastic_energy
+            - self.fracture_energy
+            - self.friction_work
+            - self.nonpotential_work
+            - self.release_energy
+    }
+}
+
+/// A state on the way to an equilibrium.
+#[derive(Clone, Debug)]
+pub struct Iterate {
+    /// Iteration of the load step, from 1.
+    pub iteration: usize,
+    /// Largest unbalanced force over largest contact force.
+    pub residual: f64,
+    /// Displacements and contacts.
+    pub state: State,
+}
+
+/// Something that makes a result less than it seems, though the run goes on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Pivots of floppy modes that no load moves were held.
+    RegularisedPivots {
+        /// How many.
+        count: usize,
+    },
+    /// Shear moduli were held at their floor.
+    ShearFloor {
+        /// In how many contacts.
+        contacts: usize,
+    },
+    /// Symmetric second-order work of a contact turned negative.
+    SecondOrderWork {
+        /// In how many contacts.
+        contacts: usize,
+    },
+}
+
+/// An equilibrium: the end of a load step, or the undeformed state as step 0.
+#[derive(Clone, Debug, Default)]
+pub struct Equilibrium {
+    /// Load step, from 1; 0 before loading.
+    pub step: usize,
+    /// Index of the stage.
+    pub stage: usize,
+    /// Factor of the stage's actions; between two factors where a step could not be finished.
+    pub load_factor: f64,
+    /// False: the last equilibrium of a load step that could not be finished.
+    pub complete: bool,
+    /// Linear solves in this step.
+    pub iterations: usize,
+    /// Largest unbalanced force over largest contact force.
+    pub residual: f64,
+    /// How often the step was halved.
+    pub cuts: usize,
+    /// Displacements and contacts.
+    pub state: State,
+    /// External load on each body, loads of all actions together.
+    pub loads: PerBody<Load>,
+    /// Reaction at held and moved freedoms; zero elsewhere.
+    pub reactions: PerBody<Load>,
+    /// Grains set aside: nothing holds and nothing loads them.
+    pub set_aside: PerGrain<bool>,
+    /// Work and energy.
+    pub energy: Energy,
+    /// What happened in this step, in order.
+    pub events: Vec<Event>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// The way to it, when asked for.
+    pub iterates: Vec<Iterate>,
+}

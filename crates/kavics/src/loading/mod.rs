@@ -1,0 +1,9 @@
+//! Supports, loads, stages, breakage schedules and the load path.
+//!
+//! In: an assembly, its contact properties and a [`Program`]. Out: one equilibrium per load step.
+
+mod load_path;
+mod program;
+
+pub use load_path::LoadPath;
+pub use program::{Action, AppliedLoad, Breakage, Held, Prescribed, Program, Stage};

@@ -1,0 +1,3 @@
+//! Placing grains: sieve curves, dropping, regular rows.
+//!
+//! In: radii and a box. Out: grains that do not overlap.

@@ -1,0 +1,96 @@
+//! The scene file: read, checked, built into what can be solved.
+//!
+//! In: a TOML file. Out: a [`Scene`], or errors that name file, line, value and what was expected.
+
+use std::path::{Path, PathBuf};
+
+use crate::assembly::Assembly;
+use crate::contact_law::Property;
+use crate::equilibrium::Settings;
+use crate::ids::{GrainId, PerProperty};
+use crate::loading::{Breakage, LoadPath, Program};
+
+/// A scene, every name resolved, every number checked, grains placed.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Title for the report.
+    pub title: String,
+    /// Where every random choice comes from.
+    pub seed: u64,
+    /// Grains, sides, contacts, dual graph.
+    pub assembly: Assembly,
+    /// Contact properties in the order of the scene file.
+    pub properties: PerProperty<Property>,
+    /// Supports, loads, stages.
+    pub program: Program,
+    /// How equilibria are found.
+    pub settings: Settings,
+    /// When contacts break.
+    pub breakage: Breakage,
+    /// Grains of the window of `[measure]`.
+    pub window: Vec<GrainId>,
+    /// Grains and contacts are recorded every so many load steps.
+    pub record_every: usize,
+    /// Table to set beside the run.
+    pub compare: Option<PathBuf>,
+    /// What the user should know before the run.
+    pub warnings: Vec<String>,
+    /// The scene file's text, overrides included.
+    pub text: String,
+}
+
+/// Reads the file of a `listed` grain list that is not csv; the library itself knows no other format.
+///
+/// Answers rows of (x, y, radius), or a sentence that says what is wrong with the file.
+pub type ReadGrains<'a> = dyn Fn(&Path) -> Result<Vec<[f64; 3]>, String> + 'a;
+
+impl Scene {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// All that is wrong with it, each with its place in the file.
+    pub fn read(_path: &Path, _grain_lists: &ReadGrains<'_>) -> Result<Self, SceneError> {
+        unimplemented!()
+    }
+
+    /// Builds a scene from the text of a scene file; `name` stands in messages, file names in it are relative
+    /// to `folder`.
+    ///
+    /// # Errors
+    /// All that is wrong with it, each with its place in the text.
+    pub fn parse(
+        _text: &str,
+        _name: &str,
+        _folder: &Path,
+        _grain_lists: &ReadGrains<'_>,
+    ) -> Result<Self, SceneError> {
+        unimplemented!()
+    }
+
+    /// The equilibria of this scene, one load step after the other.
+    pub fn load_path(&self) -> LoadPath<'_> {
+        LoadPath::new(
+            &self.assembly,
+            &self.properties,
+            &self.program,
+            self.breakage,
+            self.settings,
+        )
+    }
+}
+
+/// What is wrong with a scene file. Its text shows the lines, marked; one block a mistake.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file could not be read.
+    #[error("{}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The scene is wrong; the text as it is shown to the user.
+    #[error("{0}")]
+    Wrong(String),
+}
