@@ -1,0 +1,110 @@
+//! A convex container: the half-planes it is the intersection of.
+
+use std::cmp::Ordering;
+
+use crate::geometry::Vector;
+
+/// A half-plane: all points behind a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPlane {
+    /// A point on the line.
+    pub point: Vector,
+    /// Unit normal that leaves the half-plane.
+    pub outward: Vector,
+}
+
+impl HalfPlane {
+    /// Distance of a point from the line, positive inside.
+    pub fn distance(&self, point: Vector) -> f64 {
+        (self.point - point).dot(self.outward)
+    }
+}
+
+/// A bounded convex polygon as the intersection of half-planes, each of which bears a side.
+#[derive(Clone, Debug)]
+pub struct Container {
+    /// The sides as they were given.
+    pub sides: Vec<HalfPlane>,
+    /// Their numbers, counter-clockwise.
+    pub(super) around: Vec<u32>,
+    /// The corner where each side of `around` starts.
+    pub(super) corners: Vec<Vector>,
+}
+
+impl Container {
+    /// The container with these sides, in any order.
+    pub fn new(sides: &[HalfPlane]) -> Self {
+        let mut around: Vec<u32> = (0..sides.len() as u32).collect();
+        around.sort_by(|&a, &b| by_angle(sides[a as usize].outward, sides[b as usize].outward));
+        let corner = |k: usize| {
+            let before = around[(k + around.len() - 1) % around.len()];
+            meeting(sides[before as usize], sides[around[k] as usize])
+        };
+        let corners = (0..around.len()).map(corner).collect();
+        Self {
+            sides: sides.to_vec(),
+            around,
+            corners,
+        }
+    }
+
+    /// Largest extent along an axis, `[length]`.
+    pub fn size(&self) -> f64 {
+        let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
+        (high.x - low.x).max(high.y - low.y)
+    }
+
+    /// The middle of the extents.
+    pub(super) fn middle(&self) -> Vector {
+        let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
+        (low + high) * 0.5
+    }
+
+    /// The same container with every length times `factor`.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let scaled = |side: &HalfPlane| HalfPlane {
+            point: side.point * factor,
+            outward: side.outward,
+        };
+        Self::new(&self.sides.iter().map(scaled).collect::<Vec<_>>())
+    }
+}
+
+/// Order of directions counter-clockwise from the positive x axis.
+fn by_angle(a: Vector, b: Vector) -> Ordering {
+    let lower_half = |v: Vector| v.y < 0.0 || (v.y == 0.0 && v.x < 0.0);
+    lower_half(a)
+        .cmp(&lower_half(b))
+        .then_with(|| 0.0_f64.total_cmp(&(a.cross(b) + 0.0)))
+}
+
+/// The point where the lines of two half-planes meet.
+fn meeting(a: HalfPlane, b: HalfPlane) -> Vector {
+    let offset = (b.point - a.point).dot(b.outward);
+    let along = a.outward.quarter_turn();
+    a.point + along * (offset / along.dot(b.outward))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_is_put_in_order() {
+        let side = |x, y, nx, ny| HalfPlane {
+            point: Vector::new(x, y),
+            outward: Vector::new(nx, ny),
+        };
+        let container = Container::new(&[
+            side(0.0, 0.0, -1.0, 0.0),
+            side(4.0, 0.0, 1.0, 0.0),
+            side(0.0, 0.0, 0.0, -1.0),
+            side(0.0, 3.0, 0.0, 1.0),
+        ]);
+        assert_eq!(container.around, [1, 3, 0, 2]);
+        assert_eq!(container.corners[0], Vector::new(4.0, 0.0));
+        assert_eq!(container.corners[2], Vector::new(0.0, 3.0));
+        assert_eq!(container.size(), 4.0);
+        assert_eq!(container.middle(), Vector::new(2.0, 1.5));
+    }
+}

@@ -1,0 +1,253 @@
+//! Near pairs of discs: cell grids, one for each octave of the radius, so that unequal discs cost no more than equal ones.
+
+use rayon::prelude::*;
+
+use crate::geometry::Vector;
+
+/// Discs that one task looks at; fixed, so that the result does not depend on the number of threads.
+pub(super) const DISCS_A_TASK: usize = 1024;
+
+/// A disc and its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Centre, `[length]`.
+    pub centre: Vector,
+    /// Radius, `[length]`.
+    pub radius: f64,
+    /// Its place in the slices that the grid was made of.
+    pub index: u32,
+}
+
+/// Two discs whose surfaces are near each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearPair {
+    /// The disc with the lower number.
+    pub first: u32,
+    /// The other.
+    pub second: u32,
+    /// Distance of the surfaces; negative: overlap, `[length]`.
+    pub gap: f64,
+}
+
+/// Discs of one octave of the radius, sorted by square cells; a row of cells is one contiguous range of discs.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
+    origin: Vector,
+    cells_a_length: f64,
+    columns: usize,
+    rows: usize,
+    start: Vec<u32>,
+    discs: Vec<Disc>,
+    pub(super) largest_radius: f64,
+}
+
+impl Level {
+    fn new(discs: &[Disc]) -> Self {
+        let (low, high) = extent(discs.iter().map(|d| d.centre));
+        let (width, height) = (high.x - low.x, high.y - low.y);
+        let largest_radius = discs.iter().fold(0.0, |m: f64, d| m.max(d.radius));
+        let cells = 2.0 * discs.len() as f64;
+        let cell = (2.0 * largest_radius)
+            .max((width * height / cells).sqrt())
+            .max(width.max(height) / cells);
+        let cell = if cell > 0.0 { cell } else { 1.0 };
+        let mut level = Self {
+            origin: low,
+            cells_a_length: 1.0 / cell,
+            columns: (width / cell) as usize + 1,
+            rows: (height / cell) as usize + 1,
+            start: Vec::new(),
+            discs: discs.to_vec(),
+            largest_radius,
+        };
+        level.sort(discs);
+        level
+    }
+
+    /// Counting sort by cells, stable.
+    fn sort(&mut self, discs: &[Disc]) {
+        let mut start = vec![0_u32; self.columns * self.rows + 1];
+        let cell = |d: &Disc| self.row(d.centre.y) * self.columns + self.column(d.centre.x);
+        for disc in discs {
+            start[cell(disc) + 1] += 1;
+        }
+        for c in 1..start.len() {
+            start[c] += start[c - 1];
+        }
+        let mut next = start.clone();
+        let mut sorted = discs.to_vec();
+        for disc in discs {
+            let place = &mut next[cell(disc)];
+            sorted[*place as usize] = *disc;
+            *place += 1;
+        }
+        self.start = start;
+        self.discs = sorted;
+    }
+
+    fn column(&self, x: f64) -> usize {
+        (((x - self.origin.x) * self.cells_a_length).max(0.0) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.origin.y) * self.cells_a_length).max(0.0) as usize).min(self.rows - 1)
+    }
+
+    /// The discs with their centre in a square, and some around it, row by row.
+    pub(super) fn around(&self, centre: Vector, distance: f64) -> impl Iterator<Item = &[Disc]> {
+        let columns = (
+            self.column(centre.x - distance),
+            self.column(centre.x + distance),
+        );
+        (self.row(centre.y - distance)..=self.row(centre.y + distance)).map(move |row| {
+            let first = row * self.columns;
+            let from = self.start[first + columns.0] as usize;
+            let to = self.start[first + columns.1 + 1] as usize;
+            &self.discs[from..to]
+        })
+    }
+}
+
+/// Cell grids of discs, one for each octave of the radius.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    pub(super) discs: Vec<Disc>,
+    pub(super) levels: Vec<Level>,
+}
+
+impl Grid {
+    /// The grid of the discs with these centres and radii; O(N).
+    pub fn new(centres: &[Vector], radii: &[f64]) -> Self {
+        let disc = |(index, (&centre, &radius))| Disc {
+            centre,
+            radius,
+            index: index as u32,
+        };
+        let discs: Vec<Disc> = centres.iter().zip(radii).enumerate().map(disc).collect();
+        let mut octaves: Vec<u64> = radii.iter().map(|&r| octave(r)).collect();
+        octaves.sort_unstable();
+        octaves.dedup();
+        let of_octave = |&o: &u64| -> Vec<Disc> {
+            let inside = discs.iter().filter(|d| octave(d.radius) == o);
+            inside.copied().collect()
+        };
+        let levels = octaves.iter().map(|o| Level::new(&of_octave(o))).collect();
+        Self { discs, levels }
+    }
+
+    /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap.
+    pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
+        let tasks: Vec<Vec<NearPair>> = self
+            .discs
+            .par_chunks(DISCS_A_TASK)
+            .map(|discs| {
+                let mut pairs = Vec::new();
+                for disc in discs {
+                    self.near_pairs_of(disc, reach, &mut pairs);
+                }
+                pairs
+            })
+            .collect();
+        tasks.concat()
+    }
+
+    /// The pairs of a disc with discs of higher numbers.
+    fn near_pairs_of(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
+        let before = pairs.len();
+        for level in &self.levels {
+            let distance = (disc.radius + level.largest_radius + reach).max(0.0);
+            for row in level.around(disc.centre, distance * (1.0 + 1e-9)) {
+                for other in row {
+                    if other.index <= disc.index {
+                        continue;
+                    }
+                    let squared = (other.centre - disc.centre).length_squared();
+                    let radii = disc.radius + other.radius;
+                    let bound = radii + reach;
+                    if squared > bound * bound * (1.0 + 1e-9) {
+                        continue;
+                    }
+                    let gap = squared.sqrt() - radii;
+                    if gap <= reach {
+                        pairs.push(NearPair {
+                            first: disc.index,
+                            second: other.index,
+                            gap,
+                        });
+                    }
+                }
+            }
+        }
+        pairs[before..].sort_unstable_by_key(|p| p.second);
+    }
+}
+
+/// The binary exponent of a radius.
+fn octave(radius: f64) -> u64 {
+    radius.abs().to_bits() >> 52
+}
+
+/// The lowest and highest coordinates of the finite points.
+pub(super) fn extent(points: impl Iterator<Item = Vector>) -> (Vector, Vector) {
+    let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
+    let mut high = -low;
+    for p in points.filter(|p| p.x.is_finite() && p.y.is_finite()) {
+        low = Vector::new(low.x.min(p.x), low.y.min(p.y));
+        high = Vector::new(high.x.max(p.x), high.y.max(p.y));
+    }
+    if low.x <= high.x {
+        (low, high)
+    } else {
+        (Vector::default(), Vector::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pairs(discs: &[(f64, f64, f64)], reach: f64) -> Vec<(u32, u32)> {
+        let centres: Vec<_> = discs.iter().map(|d| Vector::new(d.0, d.1)).collect();
+        let radii: Vec<_> = discs.iter().map(|d| d.2).collect();
+        let pairs = Grid::new(&centres, &radii).near_pairs(reach);
+        pairs.iter().map(|p| (p.first, p.second)).collect()
+    }
+
+    #[test]
+    fn discs_at_the_reach_are_near() {
+        let row = [(0.0, 0.0, 1.0), (5.0, 0.0, 2.0), (9.0, 0.0, 1.0)];
+        assert_eq!(pairs(&row, 2.0), [(0, 1), (1, 2)]);
+        assert_eq!(pairs(&row, 1.9), [(1, 2)]);
+        assert_eq!(pairs(&row, 100.0), [(0, 1), (0, 2), (1, 2)]);
+    }
+
+    #[test]
+    fn a_negative_reach_finds_overlaps_alone() {
+        let row = [(0.0, 0.0, 1.0), (1.5, 0.0, 1.0), (3.5, 0.0, 1.0)];
+        assert_eq!(pairs(&row, -0.25), [(0, 1)]);
+    }
+
+    #[test]
+    fn a_large_disc_meets_every_small_one_around_it() {
+        let mut discs = vec![(0.0, 0.0, 100.0)];
+        for k in 0..600 {
+            let angle = std::f64::consts::TAU * f64::from(k) / 600.0;
+            discs.push((101.0 * angle.cos(), 101.0 * angle.sin(), 1.0));
+        }
+        let around = pairs(&discs, 1e-9);
+        assert_eq!(around.iter().filter(|p| p.0 == 0).count(), 600);
+    }
+
+    #[test]
+    fn odd_numbers_are_no_trouble() {
+        let discs = [
+            (f64::NAN, 0.0, 1.0),
+            (1e300, -1e300, 0.0),
+            (0.0, f64::INFINITY, 1e-320),
+            (3.0, 3.0, 1.0),
+            (3.0, 3.0, 1.0),
+        ];
+        assert_eq!(pairs(&discs, 0.0), [(3, 4)]);
+        assert!(pairs(&[], 1.0).is_empty());
+    }
+}
