@@ -1,8 +1,10 @@
 //! Which bodies meet, and the dual graph: from grains and sides to contact sites, power cells and triangles.
 
 use crate::assembly::{Contact, Grain, Partner, Side};
-use crate::geometry::Vector;
-use crate::ids::{GrainId, PerGrain, PerSide, PropertyId};
+use crate::geometry::{
+    Container, DualEdge, Grid, HalfPlane, NearPair, PowerDiagram, SideEdge, Vector, power_diagram,
+};
+use crate::ids::{GrainId, Id, PerGrain, PerSide, PropertyId, SideId};
 
 /// Which pairs of grains carry a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,4 +77,193 @@ pub struct Shaping {
     pub dual_length: DualLength,
     /// Contact point.
     pub contact_point: ContactPoint,
+}
+
+/// Edges shorter than this share of the mean radius count as no edge.
+const NO_LENGTH: f64 = 1e-9;
+/// Grains nearer than this share of the mean radius are likely neighbours in the power diagram.
+const LIKELY: f64 = 1e-3;
+
+/// The contact graph of grains between the sides of a convex container, and its dual.
+///
+/// Two grains touch where their gap is at most `touching_tolerance`, and touching grains always have a site. A grain
+/// is joined to a present side where its gap is at most `reach` of that side or the tolerance, and its power cell has
+/// an edge on the side. All sides bound the power diagram, present or not. Lengths in `[length]`.
+/// Bojtár & Bagi (1989), figs. 2–3; the dual graph as power diagram after Gellatly & Finney (1982).
+pub fn contact_graph(
+    grains: &PerGrain<Grain>,
+    sides: &PerSide<Side>,
+    between: Between,
+    reach: &PerSide<f64>,
+    touching_tolerance: f64,
+) -> ContactGraph {
+    let centres: Vec<Vector> = grains.values().iter().map(|g| g.centre).collect();
+    let radii: Vec<f64> = grains.values().iter().map(|g| g.radius).collect();
+    let mean_radius = radii.iter().sum::<f64>() / radii.len().max(1) as f64;
+    let near = Grid::new(&centres, &radii).near_pairs(touching_tolerance.max(LIKELY * mean_radius));
+    let planes = sides.values().iter().map(|side| HalfPlane {
+        point: side.start,
+        outward: side.outward,
+    });
+    let container = Container::new(&planes.collect::<Vec<_>>());
+    let diagram = power_diagram(&centres, &radii, &container, &near);
+    let choice = Choice {
+        grains,
+        sides,
+        between,
+        reach,
+        touching_tolerance,
+        no_length: NO_LENGTH * mean_radius,
+    };
+    let mut sites = choice.between_grains(&near, &diagram);
+    sites.extend(choice.at_sides(&diagram));
+    let triangle = |t: &[u32; 3]| t.map(GrainId);
+    ContactGraph {
+        sites,
+        triangles: diagram.triangles.iter().map(triangle).collect(),
+        cell_area: diagram.cell_area.into(),
+    }
+}
+
+/// What makes a site of a near pair or an edge.
+struct Choice<'a> {
+    grains: &'a PerGrain<Grain>,
+    sides: &'a PerSide<Side>,
+    between: Between,
+    reach: &'a PerSide<f64>,
+    touching_tolerance: f64,
+    no_length: f64,
+}
+
+impl Choice<'_> {
+    /// Merges touching pairs and edges, both by (first, second).
+    fn between_grains(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<Site> {
+        let touching = near.iter().filter(|p| p.gap <= self.touching_tolerance);
+        let mut touching = touching.map(|p| (p.first, p.second)).peekable();
+        let mut sites = Vec::new();
+        for edge in &diagram.edges {
+            let pair = (edge.first, edge.second);
+            while let Some(lost) = touching.next_if(|&t| t < pair) {
+                sites.push(self.site(lost, [0.0; 2]));
+            }
+            let touches = touching.next_if_eq(&pair).is_some();
+            if touches || self.between == Between::Neighbours && self.has_length(edge) {
+                sites.push(self.site(pair, edge.parts));
+            }
+        }
+        sites.extend(touching.map(|pair| self.site(pair, [0.0; 2])));
+        sites
+    }
+
+    fn has_length(&self, edge: &DualEdge) -> bool {
+        edge.parts[0] + edge.parts[1] > self.no_length
+    }
+
+    fn site(&self, (first, second): (u32, u32), edge_parts: [f64; 2]) -> Site {
+        let (first, second) = (GrainId(first), GrainId(second));
+        let (a, b) = (self.grains[first], self.grains[second]);
+        let branch = b.centre - a.centre;
+        let l = branch.length();
+        // Coincident centres, which the scene refuses, still get a finite site.
+        let normal = if l > 0.0 {
+            branch * (1.0 / l)
+        } else {
+            Vector::new(1.0, 0.0)
+        };
+        let along = if l > 0.0 {
+            0.5 * (l + (a.radius - b.radius) * (a.radius + b.radius) / l)
+        } else {
+            0.0
+        };
+        Site {
+            first: Partner::Grain(first),
+            second: Partner::Grain(second),
+            normal,
+            branch_length: l,
+            tangent_point: a.centre + normal * along,
+            edge_parts,
+            gap: l - (a.radius + b.radius),
+        }
+    }
+
+    fn at_sides(&self, diagram: &PowerDiagram) -> Vec<Site> {
+        let site = |edge: &SideEdge| self.site_at_side(edge);
+        diagram.side_edges.iter().filter_map(site).collect()
+    }
+
+    fn site_at_side(&self, edge: &SideEdge) -> Option<Site> {
+        let (grain, id) = (GrainId(edge.disc), SideId::from_index(edge.side as usize));
+        let (Grain { centre, radius }, side) = (self.grains[grain], &self.sides[id]);
+        let gap = side.distance(centre) - radius;
+        let joined = side.present
+            && gap <= self.reach[id].max(self.touching_tolerance)
+            && edge.parts[0] + edge.parts[1] > self.no_length;
+        joined.then(|| Site {
+            first: Partner::Grain(grain),
+            second: Partner::Side(id),
+            normal: side.outward,
+            branch_length: radius,
+            tangent_point: centre + side.outward * radius,
+            edge_parts: edge.parts,
+            gap,
+        })
+    }
+}
+
+impl Site {
+    /// The contact that a contact property makes of this site.
+    ///
+    /// Capped, a part of the dual edge reaches at most g = √(R_i·R_j) from the tangent point, at a side g = R: where
+    /// the tangent meets the hull of the two grains, so that s does not depend on the box.
+    pub fn contact(
+        &self,
+        shaping: Shaping,
+        grains: &PerGrain<Grain>,
+        property: PropertyId,
+        strength_factor: f64,
+    ) -> Contact {
+        let g = self.cap(grains);
+        let kept = match shaping.dual_length {
+            DualLength::Capped => self.edge_parts.map(|part| part.min(g).max(-g)),
+            DualLength::Full | DualLength::Number(_) => self.edge_parts,
+        };
+        let s = match shaping.dual_length {
+            DualLength::Number(s) => s,
+            DualLength::Capped | DualLength::Full => kept[0] + kept[1],
+        };
+        let halves = [0.5 * s; 2];
+        let (point, dual_parts) = match (shaping.contact_point, shaping.dual_length) {
+            (ContactPoint::Tangent, DualLength::Number(_)) => (self.tangent_point, halves),
+            (ContactPoint::Tangent, _) => (self.tangent_point, kept),
+            (ContactPoint::Midpoint, _) => {
+                let offset = 0.5 * (kept[1] - kept[0]);
+                let tangent = self.normal.quarter_turn();
+                (self.tangent_point + tangent * offset, halves)
+            }
+        };
+        Contact {
+            first: self.first,
+            second: self.second,
+            normal: self.normal,
+            branch_length: self.branch_length,
+            point,
+            dual_parts,
+            dual_length_full: self.edge_parts[0] + self.edge_parts[1],
+            property,
+            strength_factor,
+        }
+    }
+
+    /// The length g of the cap.
+    fn cap(&self, grains: &PerGrain<Grain>) -> f64 {
+        let radius = |partner| match partner {
+            Partner::Grain(grain) => Some(grains[grain].radius),
+            Partner::Side(_) => None,
+        };
+        match (radius(self.first), radius(self.second)) {
+            (Some(a), Some(b)) => (a * b).sqrt(),
+            (Some(r), None) | (None, Some(r)) => r,
+            (None, None) => f64::INFINITY,
+        }
+    }
 }

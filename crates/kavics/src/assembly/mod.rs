@@ -3,8 +3,14 @@
 //! In: discs and a container. Out: an [`Assembly`] that nothing downstream changes.
 
 mod contact_graph;
+mod container;
+mod envelope;
 
-pub use contact_graph::{Between, ContactGraph, ContactPoint, DualLength, Shaping, Site};
+pub use contact_graph::{
+    Between, ContactGraph, ContactPoint, DualLength, Shaping, Site, contact_graph,
+};
+pub use container::{box_sides, outside, overlaps};
+pub use envelope::{EnvelopePart, envelope};
 
 use crate::geometry::Vector;
 use crate::ids::{BodyId, GrainId, Id, PerContact, PerGrain, PerSide, PropertyId, SideId};
