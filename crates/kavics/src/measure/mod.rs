@@ -1,10 +1,32 @@
 //! State variables of an equilibrium, in a window: fabric, graph porosity, stress and its parts, strain, work.
 //!
-//! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure.
+//! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure. Sums run over contacts in the order of their
+//! ids. Bojtár & Bagi (1989), eqs. 1–13.
 
-use crate::assembly::Assembly;
-use crate::equilibrium::{Load, State};
-use crate::ids::{GrainId, PerBody, PerGrain};
+mod fabric;
+mod graph_porosity;
+mod half_contact;
+mod strain;
+mod stress;
+mod tensor;
+mod window;
+mod work;
+
+pub use fabric::{branch_tensor, contact_tensor, fabric_length_tensor, fabric_tensor};
+pub use graph_porosity::{GraphPorosity, graph_porosity};
+pub use strain::strain;
+pub use stress::{
+    StressPartition, average_stress, bending_stress, grain_stress, moment_asymmetry,
+    stress_partition,
+};
+pub use tensor::{SymmetricTensor, Tensor};
+pub use window::{Window, coordination_number, void_ratio, window_area};
+pub use work::{boundary_work, contact_mean_work, contact_work, macroscopic_work};
+
+use crate::assembly::{Assembly, Partner};
+use crate::equilibrium::{Equilibrium, Load, State};
+use crate::geometry::Vector;
+use crate::ids::{GrainId, PerBody};
 
 /// All that a measure may read.
 #[derive(Clone, Copy, Debug)]
@@ -19,73 +41,33 @@ pub struct Snapshot<'a> {
     pub reactions: &'a PerBody<Load>,
 }
 
-/// The grains that are measured.
-#[derive(Clone, Debug, Default)]
-pub struct Window {
-    grains: Vec<GrainId>,
-    inside: PerGrain<bool>,
-}
-
-impl Window {
-    /// The window of `grains`, in an assembly of `count` grains.
-    pub fn new(mut grains: Vec<GrainId>, count: usize) -> Self {
-        grains.sort_unstable();
-        grains.dedup();
-        let mut inside = PerGrain::filled(false, count);
-        for &grain in &grains {
-            inside[grain] = true;
+impl<'a> Snapshot<'a> {
+    /// The snapshot of an equilibrium.
+    pub fn new(assembly: &'a Assembly, equilibrium: &'a Equilibrium) -> Self {
+        Self {
+            assembly,
+            state: &equilibrium.state,
+            loads: &equilibrium.loads,
+            reactions: &equilibrium.reactions,
         }
-        Self { grains, inside }
     }
 
-    /// The grains in the order of their ids.
-    pub fn grains(&self) -> &[GrainId] {
-        &self.grains
+    /// Displacement of a grain's centre.
+    fn translation(&self, grain: GrainId) -> Vector {
+        let moved = self.state.displacements[self.assembly.body(Partner::Grain(grain))];
+        Vector::new(moved.x, moved.y)
     }
 
-    /// Whether a grain belongs to the window.
-    pub fn contains(&self, grain: GrainId) -> bool {
-        self.inside[grain]
+    /// External load and reaction on a grain.
+    fn external(&self, grain: GrainId) -> Load {
+        let body = self.assembly.body(Partner::Grain(grain));
+        let (load, reaction) = (self.loads[body], self.reactions[body]);
+        Load {
+            x: load.x + reaction.x,
+            y: load.y + reaction.y,
+            moment: load.moment + reaction.moment,
+        }
     }
-}
-
-/// A symmetric tensor of the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SymmetricTensor {
-    /// Component xx.
-    pub xx: f64,
-    /// Component xy.
-    pub xy: f64,
-    /// Component yy.
-    pub yy: f64,
-}
-
-/// A tensor of the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tensor {
-    /// Component xx.
-    pub xx: f64,
-    /// Component xy.
-    pub xy: f64,
-    /// Component yx.
-    pub yx: f64,
-    /// Component yy.
-    pub yy: f64,
-}
-
-/// Average stress and its four parts after Cundall & Strack (1983), `[force/length²]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StressPartition {
-    /// The whole.
-    pub total: Tensor,
-    /// Shear part.
-    pub shear: Tensor,
-    /// Normal variation part.
-    pub variation: Tensor,
-    /// Fabric part.
-    pub fabric: Tensor,
-    /// Isotropic part: both diagonal components.
-    pub isotropic: f64,
 }
 
 /// Every measure of one window at one state; what does not exist is none.
@@ -122,11 +104,30 @@ pub struct Measures {
 }
 
 /// Every measure of a window at a state.
-pub fn measures(_snapshot: &Snapshot<'_>, _window: &Window) -> Measures {
-    unimplemented!()
-}
-
-/// Average stress of each grain over its own power cell, `[force/length²]`.
-pub fn grain_stress(_snapshot: &Snapshot<'_>) -> PerGrain<Tensor> {
-    unimplemented!()
+pub fn measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
+    if window.grains().is_empty() {
+        return Measures::default();
+    }
+    let porosity = graph_porosity(snapshot, window);
+    let directions = fabric::fabric_tensors(snapshot, window);
+    let stress = stress_partition(snapshot, window);
+    let strain = strain(snapshot, window);
+    Measures {
+        window_area: window_area(snapshot, window),
+        coordination_number: coordination_number(snapshot, window),
+        void_ratio: void_ratio(snapshot, window),
+        graph_porosity: porosity.map(|p| p.once),
+        graph_porosity_printed: porosity.map(|p| p.printed),
+        fabric: directions.fabric,
+        fabric_length: directions.fabric_length,
+        branch: directions.branch,
+        contact: directions.contact,
+        stress,
+        strain,
+        contact_work: Some(contact_work(snapshot, window)),
+        macroscopic_work: stress
+            .zip(strain)
+            .map(|(stress, e)| macroscopic_work(snapshot, window, stress.total, e)),
+        boundary_work: strain.map(|e| boundary_work(snapshot, window, e)),
+    }
 }

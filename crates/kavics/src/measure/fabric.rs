@@ -1,0 +1,101 @@
+//! Fabric, branch and contact tensors: where contact normals point, weighted by 1, l and s.
+//!
+//! Bojtár & Bagi (1989), eqs. 1–3, over the grains of the window and the active contacts of each, those with sides
+//! included: a contact within the window counts twice, one that leaves it and one with a side once.
+
+use crate::measure::half_contact::{HalfContact, half_contacts};
+use crate::measure::{Snapshot, SymmetricTensor, Window};
+
+/// The four readings of where contacts point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct FabricTensors {
+    pub fabric: Option<SymmetricTensor>,
+    pub fabric_length: Option<SymmetricTensor>,
+    pub branch: Option<SymmetricTensor>,
+    pub contact: Option<SymmetricTensor>,
+}
+
+/// All four in one pass.
+pub(super) fn fabric_tensors(snapshot: &Snapshot<'_>, window: &Window) -> FabricTensors {
+    let [fabric, fabric_length, branch, contact] = weighted(snapshot, window, |c| {
+        [1.0, squared_length(c), c.branch_length, c.dual_length]
+    });
+    FabricTensors {
+        fabric,
+        fabric_length,
+        branch,
+        contact,
+    }
+}
+
+/// Fabric tensor: how contact normals n are spread over directions.
+///
+/// ```math
+/// \varphi_{ij} = \frac{\sum_p \sum_{c \in p} n_i^c n_j^c}{\sum_p m_p}
+/// ```
+///
+/// Symmetric, trace 1, dimensionless; none without an active contact. Satake (1982); Bojtár & Bagi (1989), eq. 1,
+/// first form.
+pub fn fabric_tensor(snapshot: &Snapshot<'_>, window: &Window) -> Option<SymmetricTensor> {
+    let [tensor] = weighted(snapshot, window, |_| [1.0]);
+    tensor
+}
+
+/// Fabric tensor read with the branch vectors l: every contact weighs its squared branch length.
+///
+/// ```math
+/// \varphi^l_{ij} = \frac{\sum_p \sum_{c \in p} l_i^c l_j^c}{\sum_p \sum_{c \in p} (l^c)^2}
+/// ```
+///
+/// Symmetric, trace 1, dimensionless; none without an active contact. Bojtár & Bagi (1989), eq. 1, second form,
+/// whose printed denominator Σ l has not this trace (decision 0001).
+pub fn fabric_length_tensor(snapshot: &Snapshot<'_>, window: &Window) -> Option<SymmetricTensor> {
+    let [tensor] = weighted(snapshot, window, |c| [squared_length(c)]);
+    tensor
+}
+
+/// Branch tensor: contact normals n weighted by branch length l.
+///
+/// ```math
+/// B_{ij} = \frac{\sum_p \sum_{c \in p} l^c n_i^c n_j^c}{\sum_p \sum_{c \in p} l^c}
+/// ```
+///
+/// Symmetric, trace 1, dimensionless; none without an active contact; φ where all branches are equal.
+/// Bojtár & Bagi (1989), eq. 2.
+pub fn branch_tensor(snapshot: &Snapshot<'_>, window: &Window) -> Option<SymmetricTensor> {
+    let [tensor] = weighted(snapshot, window, |c| [c.branch_length]);
+    tensor
+}
+
+/// Contact tensor: contact normals n weighted by the full dual length s.
+///
+/// ```math
+/// C_{ij} = \frac{\sum_p \sum_{c \in p} s^c n_i^c n_j^c}{\sum_p \sum_{c \in p} s^c}
+/// ```
+///
+/// Symmetric, trace 1, dimensionless; none without an active contact. Bojtár & Bagi (1989), eq. 3.
+pub fn contact_tensor(snapshot: &Snapshot<'_>, window: &Window) -> Option<SymmetricTensor> {
+    let [tensor] = weighted(snapshot, window, |c| [c.dual_length]);
+    tensor
+}
+
+fn squared_length(contact: &HalfContact) -> f64 {
+    contact.branch_length * contact.branch_length
+}
+
+/// Σ w n_i n_j / Σ w for each of several weights w.
+fn weighted<const N: usize>(
+    snapshot: &Snapshot<'_>,
+    window: &Window,
+    weights: impl Fn(&HalfContact) -> [f64; N],
+) -> [Option<SymmetricTensor>; N] {
+    let mut sums = [(SymmetricTensor::default(), 0.0); N];
+    half_contacts(snapshot, window).for_each(|contact| {
+        let directed = SymmetricTensor::square(contact.normal);
+        for ((tensor, total), weight) in sums.iter_mut().zip(weights(&contact)) {
+            *tensor += directed * weight;
+            *total += weight;
+        }
+    });
+    sums.map(|(tensor, total)| (total > 0.0).then(|| tensor * (1.0 / total)))
+}
