@@ -4,6 +4,15 @@
 //! tangent, and what it will remember. Signs as in theory: opening and tension positive, rotation
 //! counter-clockwise. Bojtár & Bagi (1989), eqs. 20–22.
 
+mod cemented;
+mod cohesionless;
+mod shear;
+mod stiffness;
+mod strength;
+
+pub use stiffness::Stiffness;
+pub use strength::Limits;
+
 use serde::{Deserialize, Serialize};
 
 use crate::ids::PropertyId;
@@ -178,6 +187,53 @@ pub struct Cohesionless {
     pub friction: Option<f64>,
 }
 
+/// What a contact remembers of its last equilibrium.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactMemory {
+    /// Relative displacement there.
+    pub displacement: RelativeDisplacement,
+    /// Force there.
+    pub force: ContactForce,
+    /// How it carried there.
+    pub phase: Phase,
+    /// Shear that the contact does not resist any more: slip, or the shear at which it came to be, `[length]`.
+    pub slip: f64,
+    /// Relative rotation at which the contact came to be, dimensionless.
+    pub rotation_origin: f64,
+}
+
+/// A square matrix over the components normal, shear, rotation.
+pub type Matrix = [[f64; 3]; 3];
+
+/// How a contact answers a relative displacement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Response {
+    /// Force.
+    pub force: ContactForce,
+    /// ∂force/∂displacement, not symmetric in general.
+    pub tangent: Matrix,
+    /// A symmetric stiffness for the iteration: force/displacement where the law has no memory.
+    pub secant: Matrix,
+}
+
+/// Energy that went through a contact between two equilibria beside what it holds, `[force·length]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dissipation {
+    /// Work of friction.
+    pub friction: f64,
+    /// Work that a law without potential took (positive) or gave (negative).
+    pub nonpotential: f64,
+}
+
+/// A phase that a contact asks for, and how far the present one is from admissible, `[force]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseChange {
+    /// The phase asked for.
+    pub to: Phase,
+    /// How far the present phase is violated, `[force]`.
+    pub violation: f64,
+}
+
 /// A contact law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
@@ -193,6 +249,122 @@ impl Law {
         match self {
             Self::Cemented(_) => "cemented",
             Self::Cohesionless(_) => "cohesionless",
+        }
+    }
+
+    /// Stiffness of a contact of this law.
+    pub fn stiffness(&self, geometry: &ContactGeometry) -> Stiffness {
+        match self {
+            Self::Cemented(law) => law.stiffness(geometry),
+            Self::Cohesionless(law) => law.stiffness(geometry),
+        }
+    }
+
+    /// Limits of the force components; none where nothing breaks.
+    pub fn limits(&self, geometry: &ContactGeometry, factor: f64) -> Limits {
+        match self {
+            Self::Cemented(law) => law.strength.limits(geometry, factor),
+            Self::Cohesionless(_) => Limits::UNBREAKABLE,
+        }
+    }
+
+    /// What a broken bond becomes; none: nothing.
+    pub fn after_breakage(&self) -> Option<PropertyId> {
+        match self {
+            Self::Cemented(law) => law.after_breakage,
+            Self::Cohesionless(_) => None,
+        }
+    }
+
+    /// Whether contacts of this law open, close, stick and slide.
+    pub fn has_phases(&self) -> bool {
+        matches!(self, Self::Cohesionless(_))
+    }
+
+    /// Force, secant and tangent at `v` while the contact carries as `phase` says.
+    pub fn respond(
+        &self,
+        v: RelativeDisplacement,
+        k: &Stiffness,
+        memory: &ContactMemory,
+        phase: Phase,
+    ) -> Response {
+        match self {
+            Self::Cemented(law) => law.respond(v, k, memory),
+            Self::Cohesionless(law) => law.respond(v, k, memory, phase),
+        }
+    }
+
+    /// The phase that a contact asks for when `phase` is not admissible at `v`.
+    pub fn phase_change(
+        &self,
+        v: RelativeDisplacement,
+        force: ContactForce,
+        k: &Stiffness,
+        memory: &ContactMemory,
+        phase: Phase,
+    ) -> Option<PhaseChange> {
+        match self {
+            Self::Cemented(_) => None,
+            Self::Cohesionless(law) => law.phase_change(v, force, k, memory, phase),
+        }
+    }
+
+    /// What a contact remembers once `v` and `force` have become an equilibrium.
+    pub fn remember(
+        &self,
+        v: RelativeDisplacement,
+        force: ContactForce,
+        k: &Stiffness,
+        memory: &ContactMemory,
+        phase: Phase,
+    ) -> ContactMemory {
+        let slip = match self {
+            Self::Cemented(_) => memory.slip,
+            Self::Cohesionless(law) => law.slip(v, force, k, memory, phase),
+        };
+        ContactMemory {
+            displacement: v,
+            force,
+            phase,
+            slip,
+            ..*memory
+        }
+    }
+
+    /// Energy that a contact holds at `v` under `force`, `[force·length]`.
+    pub fn energy(
+        &self,
+        v: RelativeDisplacement,
+        force: ContactForce,
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> f64 {
+        if force == ContactForce::default() {
+            return 0.0;
+        }
+        let rotation = v.rotation - memory.rotation_origin;
+        let bending = 0.5 * k.moment * rotation * rotation + k.coupling * v.normal * rotation;
+        0.5 * k.normal * v.normal * v.normal
+            + bending
+            + shear::energy(force.shear, k.shear_at(v.normal))
+    }
+
+    /// Energy that went elsewhere on the straight way from the remembered equilibrium to `v`.
+    pub fn dissipation(
+        &self,
+        v: RelativeDisplacement,
+        force: ContactForce,
+        k: &Stiffness,
+        memory: &ContactMemory,
+        phase: Phase,
+    ) -> Dissipation {
+        match self {
+            Self::Cemented(law) => Dissipation {
+                nonpotential: shear::dissipation(law.reading, v, force.shear, k, memory),
+                friction: 0.0,
+            },
+            Self::Cohesionless(law) => law.dissipation(v, force, k, memory, phase),
         }
     }
 }

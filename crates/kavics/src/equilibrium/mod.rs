@@ -2,9 +2,17 @@
 //!
 //! In: an assembly, contact states, loads and prescribed displacements. Out: displacements and contact forces.
 
+pub(crate) mod balance;
+pub(crate) mod bond;
+mod direct;
 mod error;
+mod kinematics;
+mod pieces;
+mod search;
+mod sparsity;
 
 pub use error::SolveError;
+pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS};
 
 use crate::contact_law::{ContactForce, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};

@@ -1,30 +1,225 @@
 //! The load path: an iterator of equilibria.
 
+use std::collections::VecDeque;
+
+use super::advance::{self, Point, Way};
+use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
+use crate::equilibrium::balance::{Failure, System};
 use crate::equilibrium::{Equilibrium, Settings, SolveError};
 use crate::ids::PerProperty;
-use crate::loading::{Breakage, Program};
+
+/// A load step that fails is halved until its end is known to this share of the load factor.
+const COLLAPSE: f64 = 1e-4;
 
 /// The equilibria of a program, one load step after the other.
 ///
 /// The first item is the undeformed state, step 0. Where a load step cannot be finished, the last equilibrium
 /// found within it comes with `complete = false`, then the error, then nothing.
-#[derive(Debug)]
 pub struct LoadPath<'a> {
-    assembly: &'a Assembly,
+    system: System<'a>,
+    program: &'a Program,
+    breakage: Breakage,
+    point: Point,
+    /// Stage and place of the next load step in it.
+    next: (usize, usize),
+    step: usize,
+    waiting: VecDeque<Result<Equilibrium, SolveError>>,
+    failed: bool,
+}
+
+/// Factors at the two ends of a load step.
+struct LoadStep {
+    stage: usize,
+    from: Vec<f64>,
+    to: Vec<f64>,
+    /// The stage's load factor at the two ends.
+    load_factor: [f64; 2],
+}
+
+impl LoadStep {
+    fn factors(&self, share: f64) -> Vec<f64> {
+        let between = |(from, to): (&f64, &f64)| {
+            if share == 1.0 {
+                *to
+            } else {
+                from + share * (to - from)
+            }
+        };
+        self.from.iter().zip(&self.to).map(between).collect()
+    }
+
+    fn load_factor(&self, share: f64) -> f64 {
+        let [from, to] = self.load_factor;
+        if share == 1.0 {
+            to
+        } else {
+            from + share * (to - from)
+        }
+    }
+
+    /// Share of this load step to which its end is to be known.
+    fn resolution(&self) -> f64 {
+        let [from, to] = self.load_factor;
+        let scale = from.abs().max(to.abs());
+        if from == to {
+            COLLAPSE
+        } else {
+            COLLAPSE * scale / (to - from).abs()
+        }
+    }
 }
 
 impl<'a> LoadPath<'a> {
     /// The path of `program` through `assembly`.
     pub fn new(
         assembly: &'a Assembly,
-        _properties: &'a PerProperty<Property>,
-        _program: &'a Program,
-        _breakage: Breakage,
-        _settings: Settings,
+        properties: &'a PerProperty<Property>,
+        program: &'a Program,
+        breakage: Breakage,
+        settings: Settings,
     ) -> Self {
-        Self { assembly }
+        let mut system = System::new(assembly, properties, settings, &advance::bound(program));
+        let point = advance::undeformed(&mut system, program);
+        let mut path = Self {
+            system,
+            program,
+            breakage,
+            point,
+            next: (0, 0),
+            step: 0,
+            waiting: VecDeque::new(),
+            failed: false,
+        };
+        let way = Way {
+            events: advance::first_events(&path.point),
+            ..Way::default()
+        };
+        let start = path.equilibrium(0, 0.0, true, 0, way);
+        path.waiting.push_back(Ok(start));
+        path
+    }
+
+    /// Number of unknown displacements and rotations.
+    pub fn unknowns(&self) -> usize {
+        self.system.unknowns()
+    }
+
+    fn next_load_step(&mut self) -> Option<LoadStep> {
+        let (mut stage, mut place) = self.next;
+        while place >= self.program.stages.get(stage)?.factors.len() {
+            (stage, place) = (stage + 1, 0);
+        }
+        self.next = (stage, place + 1);
+        let Stage {
+            actions, factors, ..
+        } = &self.program.stages[stage];
+        let from = self.point.factors.clone();
+        let mut to = from.clone();
+        for &action in actions {
+            to[action] = factors[place];
+        }
+        let before = actions.first().map_or(0.0, |&action| from[action]);
+        Some(LoadStep {
+            stage,
+            from,
+            to,
+            load_factor: [before, factors[place]],
+        })
+    }
+
+    /// Finishes a load step, in parts where it does not go in one.
+    fn take(&mut self, load_step: &LoadStep) {
+        self.step += 1;
+        let mut way = Way::default();
+        let (mut done, mut part, mut cuts) = (0.0, 1.0, 0);
+        let failure: Option<Failure> = loop {
+            let target = if done + part > 1.0 - 1e-12 {
+                1.0
+            } else {
+                done + part
+            };
+            match self.attempt(load_step, target, &mut way) {
+                Ok(()) if target == 1.0 => break None,
+                Ok(()) => done = target,
+                Err(failure) if 0.5 * part < 0.5 * load_step.resolution() => break Some(failure),
+                Err(_) => {
+                    part *= 0.5;
+                    cuts += 1;
+                }
+            }
+        };
+        let complete = failure.is_none();
+        let reached = if complete { 1.0 } else { done };
+        let load_factor = load_step.load_factor(reached);
+        if reached > 0.0 {
+            let equilibrium = self.equilibrium(load_step.stage, load_factor, complete, cuts, way);
+            self.waiting.push_back(Ok(equilibrium));
+        }
+        if let Some(failure) = failure {
+            let tolerance = self.system.settings.tolerance;
+            self.waiting.push_back(Err(failure.at(
+                self.step,
+                load_factor,
+                self.system.assembly,
+                tolerance,
+            )));
+            self.failed = true;
+        }
+    }
+
+    /// One part of a load step; on failure all stays as it was but for the count of iterations.
+    fn attempt(&mut self, load_step: &LoadStep, share: f64, way: &mut Way) -> Result<(), Failure> {
+        let mut tried = way.clone();
+        let (factors, load_factor) = (load_step.factors(share), load_step.load_factor(share));
+        let reached = advance::advance(
+            &mut self.system,
+            self.program,
+            self.breakage,
+            &self.point,
+            &factors,
+            load_factor,
+            &mut tried,
+        );
+        match reached {
+            Ok(point) => {
+                self.point = point;
+                *way = tried;
+                Ok(())
+            }
+            Err(failure) => {
+                way.progress.iterations = tried.progress.iterations;
+                Err(failure)
+            }
+        }
+    }
+
+    fn equilibrium(
+        &self,
+        stage: usize,
+        load_factor: f64,
+        complete: bool,
+        cuts: usize,
+        way: Way,
+    ) -> Equilibrium {
+        Equilibrium {
+            step: self.step,
+            stage,
+            load_factor,
+            complete,
+            iterations: way.progress.iterations,
+            residual: self.point.residual,
+            cuts,
+            state: self.point.configuration.state(),
+            loads: self.point.forces.loads.clone(),
+            reactions: self.point.forces.reactions.clone(),
+            set_aside: self.point.set_aside.clone(),
+            energy: self.point.energy,
+            events: way.events,
+            warnings: way.warnings,
+            iterates: way.progress.iterates,
+        }
     }
 }
 
@@ -32,7 +227,10 @@ impl Iterator for LoadPath<'_> {
     type Item = Result<Equilibrium, SolveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let _ = self.assembly;
-        None
+        if self.waiting.is_empty() && !self.failed {
+            let load_step = self.next_load_step()?;
+            self.take(&load_step);
+        }
+        self.waiting.pop_front()
     }
 }

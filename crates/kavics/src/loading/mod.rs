@@ -2,6 +2,8 @@
 //!
 //! In: an assembly, its contact properties and a [`Program`]. Out: one equilibrium per load step.
 
+mod advance;
+mod ledger;
 mod load_path;
 mod program;
 

@@ -1,0 +1,89 @@
+//! Work and energy between two equilibria. No term is a remainder of the others.
+
+use crate::contact_law::{Dissipation, Property};
+use crate::equilibrium::balance::Configuration;
+use crate::equilibrium::bond::Bond;
+use crate::equilibrium::{Energy, Load};
+use crate::ids::{PerBody, PerProperty};
+
+/// External loads and reactions at an equilibrium.
+#[derive(Clone, Debug, Default)]
+pub struct Forces {
+    /// External load on each body.
+    pub loads: PerBody<Load>,
+    /// Reaction at held and moved freedoms.
+    pub reactions: PerBody<Load>,
+}
+
+/// Work of loads and reactions on the straight way between two equilibria:
+///
+/// ```math
+/// W = \sum_p \tfrac12 (f_0 + R_0 + f_1 + R_1)\cdot(u_1 - u_0)
+/// ```
+pub fn external_work(before: (&Configuration, &Forces), after: (&Configuration, &Forces)) -> f64 {
+    let (from, to) = (&before.0.displacements, &after.0.displacements);
+    let mut work = 0.0;
+    for body in from.ids() {
+        let step = to[body] - from[body];
+        for forces in [before.1, after.1] {
+            work += 0.5 * (forces.loads[body].work(step) + forces.reactions[body].work(step));
+        }
+    }
+    work
+}
+
+/// Energy that all contacts hold.
+pub fn elastic_energy(configuration: &Configuration, properties: &PerProperty<Property>) -> f64 {
+    configuration
+        .bonds
+        .values()
+        .iter()
+        .map(|bond| bond.energy(properties))
+        .sum()
+}
+
+/// What friction and laws without potential took since the last equilibrium.
+pub fn dissipation(
+    configuration: &Configuration,
+    properties: &PerProperty<Property>,
+) -> Dissipation {
+    let mut sum = Dissipation::default();
+    for bond in configuration.bonds.values() {
+        if let Some(law) = bond.law(properties) {
+            let part = law.dissipation(
+                bond.displacement,
+                bond.force,
+                &bond.stiffness,
+                &bond.memory,
+                bond.phase,
+            );
+            sum.friction += part.friction;
+            sum.nonpotential += part.nonpotential;
+        }
+    }
+    sum
+}
+
+/// Energy set free at fixed loads by a bond beyond its own: the force that vanished, ΔQ, works on the way of its
+/// contact to the next equilibrium, ½·ΔQ·(v′ − v), `[force·length]`.
+pub fn release_energy(before: &Bond, broken: &Bond, after: &Bond) -> f64 {
+    let (q, rest) = (before.force, broken.force);
+    let (v, next) = (before.displacement, after.displacement);
+    0.5 * ((q.normal - rest.normal) * (next.normal - v.normal)
+        + (q.shear - rest.shear) * (next.shear - v.shear)
+        + (q.moment - rest.moment) * (next.rotation - v.rotation))
+}
+
+/// Adds the way from one equilibrium to the next, breakage apart.
+pub fn add_way(
+    energy: &mut Energy,
+    before: (&Configuration, &Forces),
+    after: (&Configuration, &Forces),
+    properties: &PerProperty<Property>,
+) {
+    let dissipation = dissipation(after.0, properties);
+    energy.external_work += external_work(before, after);
+    energy.friction_work += dissipation.friction;
+    energy.nonpotential_work += dissipation.nonpotential;
+    energy.elastic_energy = elastic_energy(after.0, properties);
+}
