@@ -1,1 +1,22 @@
-//! The report of a run.
+//! The report of a run: one self-contained page, made from the results folder alone.
+
+mod comparison;
+mod error;
+
+use std::path::{Path, PathBuf};
+
+pub use comparison::{Compared, ComparedColumn, Comparison};
+pub use error::ReportError;
+use kavics_results::ResultsFolder;
+
+/// Writes the report of the results in `folder`, to `report.html` there when `output` says nothing else.
+///
+/// # Errors
+/// Results that cannot be read; a page that cannot be written.
+pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
+    let _folder = ResultsFolder::open(folder)?;
+    let usual = || folder.join("report.html");
+    let path = output.map_or_else(usual, Path::to_owned);
+    kavics_results::publish(&path, b"")?;
+    Ok(path)
+}

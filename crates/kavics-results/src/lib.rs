@@ -1,1 +1,35 @@
-//! The results folder of a run.
+//! The results folder of a run: columns, writing, reading.
+//!
+//! In: a scene and its equilibria with their measures. Out: a folder of tables in which units stand in the field
+//! metadata, and the same tables read back by column name. No mechanics is computed here.
+
+mod column;
+mod contacts;
+mod encode;
+mod error;
+mod events;
+mod folder;
+mod grain_list;
+mod grains;
+mod log;
+mod record;
+mod recorded;
+mod results;
+mod sides;
+mod steps;
+mod warning;
+
+pub use column::{Column, Unit};
+pub use contacts::ContactRow;
+pub use encode::publish;
+pub use error::ResultsError;
+pub use events::EventRow;
+pub use folder::{Columns, ResultsFolder};
+pub use grain_list::{grains_csv, read_grains, write_grains};
+pub use grains::GrainRow;
+pub use record::{RunRecord, RunState, SCHEMA_VERSION};
+pub use recorded::Recorded;
+pub use results::{Options, Results, check_room};
+pub use sides::SideRow;
+pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
+pub use warning::warning_text;

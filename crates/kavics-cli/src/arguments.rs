@@ -1,0 +1,122 @@
+//! What stands behind `kavics` on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+const STATUS: &str = "\
+Exit status:
+  0  done
+  2  wrong usage, or a wrong scene
+  3  no equilibrium; the results are valid up to the load step named
+  4  a file could not be read or written";
+
+/// Quasi-static mechanics of granular and cemented assemblies
+#[derive(Debug, Parser)]
+#[command(name = "kavics", version, after_help = STATUS)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Task {
+    /// Read and check a scene, and say what would run
+    Check(CheckArguments),
+    /// Place the grains of a scene, and do nothing else
+    Pack(PackArguments),
+    /// Find the equilibria of a scene, load step by load step
+    Run(RunArguments),
+    /// Measure finished results again
+    Measure(MeasureArguments),
+    /// Write the report of finished results: one page, no network
+    Report(ReportArguments),
+    /// Write completions for a shell to stdout
+    Completions(CompletionsArguments),
+    /// Write the manual page to stdout
+    Man,
+}
+
+/// A scene file, and what is different from it.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// Replace or add a value of the scene, e.g. --set equilibrium.tolerance=1e-12 or --set stage.0.factors=[1,2]
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct PackArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Write x, y and radius to this file (csv or parquet, by the ending); without it csv to stdout
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Number of threads; all processors when absent
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Say how many grains were placed and how densely, instead of listing them
+    #[arg(long)]
+    pub summary: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Results folder; NAME.results in the working folder when absent
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Number of threads; all processors when absent
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Replace results that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// One JSON object per load step on stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct MeasureArguments {
+    /// Results folder
+    pub results: PathBuf,
+    /// Window, as in the scene: all, undisturbed, "{ x = [0, 5], y = [0, 5] }" or "{ ids = [3, 4] }"
+    #[arg(long)]
+    pub window: Option<String>,
+    /// Write the table of load steps to this file (csv or parquet, by the ending); without it csv to stdout
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Results folder
+    pub results: PathBuf,
+    /// File to write; DIR/report.html when absent
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// Shell
+    pub shell: Shell,
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..) => Ok(count),
+        _ => Err("expected a whole number from 1".to_owned()),
+    }
+}

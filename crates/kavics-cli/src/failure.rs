@@ -1,0 +1,73 @@
+//! Why a task failed, and the exit status that says so.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use kavics::equilibrium::SolveError;
+use kavics::scene::SceneError;
+use kavics_report::ReportError;
+use kavics_results::ResultsError;
+use thiserror::Error;
+
+/// Why a task failed.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The scene is wrong.
+    #[error("{0}")]
+    Scene(SceneError),
+    /// `--set` cannot be understood.
+    #[error("--set {given}: {reason}")]
+    Override {
+        /// What was given.
+        given: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// `--window` cannot be understood.
+    #[error("--window {given}: {reason}")]
+    Window {
+        /// What was given.
+        given: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A load step has no equilibrium.
+    #[error("{error}\nthe results in {} are valid up to load step {last}", folder.display())]
+    NoEquilibrium {
+        /// Why.
+        error: SolveError,
+        /// Last load step of the results.
+        last: usize,
+        /// Results folder.
+        folder: PathBuf,
+    },
+    /// A file of the results could not be read or written.
+    #[error("{0}")]
+    Results(#[from] ResultsError),
+    /// The report could not be made.
+    #[error("{0}")]
+    Report(#[from] ReportError),
+    /// Standard output could not be written.
+    #[error("stdout: {0}")]
+    Output(#[from] std::io::Error),
+    /// Threads could not be started.
+    #[error("threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl Failure {
+    /// The exit status.
+    pub fn status(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Scene(SceneError::Unreadable { .. }) => 4,
+            Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
+            Self::Results(
+                ResultsError::Exists { .. }
+                | ResultsError::NotResults { .. }
+                | ResultsError::UnknownEnding { .. },
+            ) => 2,
+            Self::NoEquilibrium { .. } => 3,
+            Self::Results(_) | Self::Report(_) | Self::Output(_) | Self::Threads(_) => 4,
+        })
+    }
+}

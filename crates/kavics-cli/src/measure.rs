@@ -1,0 +1,81 @@
+//! `kavics measure`: the measures of finished results again, in another window.
+
+use std::io::{Write, stdout};
+
+use kavics::measure::{Snapshot, Window, measures};
+use kavics::scene::Scene;
+use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
+use toml_edit::{DocumentMut, Item, Value};
+
+use crate::arguments::MeasureArguments;
+use crate::failure::Failure;
+use crate::scene_file;
+
+pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
+    let folder = ResultsFolder::open(&arguments.results)?;
+    let scene = scene_of(&folder, arguments.window.as_deref())?;
+    let rows = measured_rows(&folder, &scene)?;
+    match &arguments.output {
+        Some(path) => write_steps(path, &rows)?,
+        None => stdout().write_all(&write_steps_csv(&rows))?,
+    }
+    scene_file::show_warnings(&scene.warnings);
+    Ok(())
+}
+
+/// The rows of `steps` at the recorded load steps, measured again.
+fn measured_rows(folder: &ResultsFolder, scene: &Scene) -> Result<Vec<StepRow>, Failure> {
+    let window = Window::new(scene.window.clone(), scene.assembly.grains.len());
+    let recorded = folder.recorded_steps()?;
+    let mut rows = folder.step_rows()?;
+    rows.retain(|row| recorded.contains(&row.step));
+    for row in &mut rows {
+        let recorded = Recorded::read(folder, row.step, scene)?;
+        let snapshot = Snapshot {
+            assembly: &scene.assembly,
+            state: &recorded.state,
+            loads: &recorded.loads,
+            reactions: &recorded.reactions,
+        };
+        row.measures = measures(&snapshot, &window);
+    }
+    Ok(rows)
+}
+
+/// The scene of the results. What it read from other files is read from the folder.
+fn scene_of(folder: &ResultsFolder, window: Option<&str>) -> Result<Scene, Failure> {
+    let text = with_own_files(&folder.scene()?, window)?;
+    let name = folder.path().join("scene.toml");
+    Scene::parse(&text, &name.to_string_lossy(), folder.path(), &read_grains)
+        .map_err(Failure::Scene)
+}
+
+fn with_own_files(text: &str, window: Option<&str>) -> Result<String, Failure> {
+    let Ok(mut document) = text.parse::<DocumentMut>() else {
+        return Ok(text.to_owned());
+    };
+    let listed = document
+        .get("grains")
+        .and_then(|grains| grains.get("listed"));
+    if listed.is_some() {
+        document["grains"]["listed"]["file"] = toml_edit::value("grains/000000.parquet");
+    }
+    if document.contains_key("compare") {
+        document["compare"]["file"] = toml_edit::value("compare.csv");
+    }
+    if let Some(window) = window {
+        let measure = document.entry("measure").or_insert_with(toml_edit::table);
+        measure["window"] = Item::Value(parse_window(window)?);
+    }
+    Ok(document.to_string())
+}
+
+fn parse_window(given: &str) -> Result<Value, Failure> {
+    if given.trim_start().starts_with('{') {
+        return given.parse().map_err(|_| Failure::Window {
+            given: given.to_owned(),
+            reason: "not a TOML table; expected e.g. { x = [0, 5], y = [0, 5] }".to_owned(),
+        });
+    }
+    Ok(Value::from(given))
+}

@@ -1,0 +1,84 @@
+//! `--set KEY=VALUE`: the text of a scene with values replaced.
+
+use toml_edit::{DocumentMut, Item, Key, Table, Value};
+
+use crate::failure::Failure;
+
+/// `text` with every override in place. A text that is no TOML comes back as it is: the scene's own check says
+/// what is wrong with it, and where.
+pub fn apply(text: &str, overrides: &[String]) -> Result<String, Failure> {
+    let Ok(mut document) = text.parse::<DocumentMut>() else {
+        return Ok(text.to_owned());
+    };
+    if overrides.is_empty() {
+        return Ok(text.to_owned());
+    }
+    for given in overrides {
+        set(document.as_item_mut(), given).map_err(|reason| Failure::Override {
+            given: given.clone(),
+            reason,
+        })?;
+    }
+    Ok(document.to_string())
+}
+
+fn set(scene: &mut Item, given: &str) -> Result<(), String> {
+    let (key, value) = given.split_once('=').ok_or("expected KEY=VALUE")?;
+    let path = Key::parse(key.trim()).map_err(|_| "the key is not a TOML key".to_owned())?;
+    let (last, tables) = path.split_last().ok_or("the key is empty")?;
+    let mut at = scene;
+    for key in tables {
+        at = step_into(at, key)?;
+    }
+    replace(at, last, parse_value(value.trim()))
+}
+
+/// The table or array element that `key` names; a table that is absent is made.
+fn step_into<'a>(at: &'a mut Item, key: &Key) -> Result<&'a mut Item, String> {
+    let name = key.get();
+    if is_array(at) {
+        return element(at, name);
+    }
+    let table = at
+        .as_table_like_mut()
+        .ok_or_else(|| format!("{name} stands in something that is no table"))?;
+    Ok(table.entry(name).or_insert_with(|| {
+        let mut table = Table::new();
+        table.set_implicit(true);
+        Item::Table(table)
+    }))
+}
+
+fn replace(at: &mut Item, key: &Key, mut value: Value) -> Result<(), String> {
+    let name = key.get();
+    if is_array(at) {
+        *element(at, name)? = Item::Value(value);
+        return Ok(());
+    }
+    let table = at
+        .as_table_like_mut()
+        .ok_or_else(|| format!("{name} stands in something that is no table"))?;
+    if let Some(old) = table.get(name).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    table.insert(name, Item::Value(value));
+    Ok(())
+}
+
+fn is_array(item: &Item) -> bool {
+    item.is_array() || item.is_array_of_tables()
+}
+
+fn element<'a>(array: &'a mut Item, number: &str) -> Result<&'a mut Item, String> {
+    let index: usize = number
+        .parse()
+        .map_err(|_| format!("{number} stands in a list; expected a number from 0"))?;
+    array
+        .get_mut(index)
+        .ok_or_else(|| format!("the list has no element {index}"))
+}
+
+/// A TOML value; what is none is a string, so that `title=Two discs` needs no quotes within quotes.
+fn parse_value(text: &str) -> Value {
+    text.parse().unwrap_or_else(|_| Value::from(text))
+}

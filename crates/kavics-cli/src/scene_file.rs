@@ -1,0 +1,48 @@
+//! From the command line to a scene.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kavics::scene::{Scene, SceneError};
+use kavics_results::read_grains;
+
+use crate::arguments::SceneArguments;
+use crate::failure::Failure;
+use crate::overrides;
+
+/// Reads the scene file, with what `--set` says.
+pub fn read(arguments: &SceneArguments) -> Result<Scene, Failure> {
+    let path = &arguments.scene;
+    let text = fs::read_to_string(path).map_err(|source| {
+        Failure::Scene(SceneError::Unreadable {
+            path: path.clone(),
+            source,
+        })
+    })?;
+    let text = overrides::apply(&text, &arguments.set)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Scene::parse(&text, &path.to_string_lossy(), folder, &read_grains).map_err(Failure::Scene)
+}
+
+/// Where results of the scene go when nothing else is said: `NAME.results` in the working folder.
+pub fn usual_folder(scene: &Path) -> PathBuf {
+    let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+    PathBuf::from(format!("{name}.results"))
+}
+
+/// Starts the threads that everything shares.
+pub fn start_threads(count: Option<usize>) -> Result<usize, Failure> {
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(count) = count {
+        pool = pool.num_threads(count);
+    }
+    pool.build_global()?;
+    Ok(rayon::current_num_threads())
+}
+
+/// Shows what the user should know.
+pub fn show_warnings(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+}

@@ -1,0 +1,185 @@
+//! The table that ends a run, 80 columns wide.
+
+use kavics::measure::{StressPartition, Tensor};
+use kavics_report::Comparison;
+use kavics_results::StepRow;
+
+/// Load steps shown before and after the gap, where there are more.
+const SHOWN: usize = 10;
+
+/// The load steps and the parts of the stress.
+pub fn summary(steps: &[StepRow]) -> String {
+    if steps.is_empty() {
+        return "no load step was finished\n".to_owned();
+    }
+    let scale = Scale::of(steps);
+    let mut text = steps_table(steps, scale);
+    if steps.iter().any(|row| row.measures.stress.is_some()) {
+        text.push_str(&parts_table(steps, scale));
+    }
+    text
+}
+
+/// A power of ten taken out of stresses that would not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Scale(i32);
+
+impl Scale {
+    fn of(steps: &[StepRow]) -> Self {
+        let stresses = steps.iter().filter_map(|row| row.measures.stress);
+        let largest = stresses
+            .flat_map(components)
+            .map(f64::abs)
+            .fold(0.0, f64::max);
+        if largest == 0.0 || (0.1..1000.0).contains(&largest) {
+            return Self(0);
+        }
+        Self(3 * (largest.log10() / 3.0).floor() as i32)
+    }
+
+    fn apply(self, value: f64) -> f64 {
+        // −0.0 would print as "-0.000".
+        let scaled = value / 10f64.powi(self.0);
+        if scaled.abs() < 5e-4 { 0.0 } else { scaled }
+    }
+
+    fn heading(self) -> String {
+        if self.0 == 0 {
+            String::new()
+        } else {
+            format!(" (stresses in 1e{})", self.0)
+        }
+    }
+}
+
+fn components(parts: StressPartition) -> Vec<f64> {
+    let tensors = [parts.total, parts.shear, parts.variation, parts.fabric];
+    let mut all: Vec<f64> = tensors
+        .iter()
+        .flat_map(|t| [t.xx, t.xy, t.yx, t.yy])
+        .collect();
+    all.push(parts.isotropic);
+    all
+}
+
+fn steps_table(steps: &[StepRow], scale: Scale) -> String {
+    let mut text = format!(
+        "{:>5} {:>9} {:>5} {:>9} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
+        "step",
+        "factor",
+        "iter.",
+        "residual",
+        "contacts",
+        "broken",
+        "stress xx",
+        "stress yy",
+        "s/v"
+    );
+    for row in rows_shown(steps) {
+        text.push_str(&row.map_or_else(|| "    …\n".to_owned(), |row| step_line(row, scale)));
+    }
+    text
+}
+
+fn step_line(row: &StepRow, scale: Scale) -> String {
+    let stress = row.measures.stress;
+    let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
+    let scaled = |value: f64| scale.apply(value);
+    format!(
+        "{:>5} {:>9.5} {:>5} {:>9.1e} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
+        row.step,
+        row.load_factor,
+        row.iterations,
+        row.residual,
+        row.contacts,
+        row.broken,
+        shown(stress.map(|s| scaled(s.total.xx))),
+        shown(stress.map(|s| scaled(s.total.yy))),
+        shown(stress.and_then(shear_over_variation)),
+    )
+}
+
+/// The shear part over the normal variation part, by their deviators' magnitudes.
+fn shear_over_variation(parts: StressPartition) -> Option<f64> {
+    let variation = deviator(parts.variation);
+    (variation > 0.0).then(|| deviator(parts.shear) / variation)
+}
+
+fn deviator(tensor: Tensor) -> f64 {
+    let difference = 0.5 * (tensor.xx - tensor.yy);
+    let mixed = 0.5 * (tensor.xy + tensor.yx);
+    (difference * difference + mixed * mixed).sqrt()
+}
+
+fn parts_table(steps: &[StepRow], scale: Scale) -> String {
+    let mut text = format!(
+        "\nparts of the stress{}\n{:<14}{:^19} {:^19} {:^19} {:>6}\n",
+        scale.heading(),
+        "step (factor)",
+        "shear",
+        "variation",
+        "fabric",
+        "isotr."
+    );
+    for row in rows_shown(steps) {
+        match row {
+            None => text.push_str("…\n"),
+            Some(row) => text.push_str(&part_lines(row, scale)),
+        }
+    }
+    text
+}
+
+fn part_lines(row: &StepRow, scale: Scale) -> String {
+    let label = format!("{} ({:.3})", row.step, row.load_factor);
+    let Some(parts) = row.measures.stress else {
+        return format!("{label:<14}no stress: the window is empty\n");
+    };
+    let tensors = [parts.shear, parts.variation, parts.fabric];
+    let line = |brackets: [&str; 2], pick: fn(Tensor) -> [f64; 2]| {
+        tensors
+            .map(|tensor| {
+                let [a, b] = pick(tensor).map(|value| scale.apply(value));
+                format!("{}{a:>8.3} {b:>8.3}{}", brackets[0], brackets[1])
+            })
+            .join(" ")
+    };
+    let upper = line(["⎡", "⎤"], |t| [t.xx, t.xy]);
+    let lower = line(["⎣", "⎦"], |t| [t.yx, t.yy]);
+    let isotropic = scale.apply(parts.isotropic);
+    format!("{label:<14}{upper} {isotropic:>8.3}\n{:14}{lower}\n", "")
+}
+
+/// All rows, or the first and the last with a gap between them.
+fn rows_shown(steps: &[StepRow]) -> Vec<Option<&StepRow>> {
+    if steps.len() <= 2 * SHOWN {
+        return steps.iter().map(Some).collect();
+    }
+    let first = steps[..SHOWN].iter().map(Some);
+    let last = steps[steps.len() - SHOWN..].iter().map(Some);
+    first.chain([None]).chain(last).collect()
+}
+
+/// The run beside the table it is compared with: the largest difference of each column.
+pub fn compared(comparison: &Comparison) -> String {
+    let mut text = format!(
+        "\nbeside compare.csv, matched by {}\n{:<22}{:>14}{:>14}{:>14}  at {}\n",
+        comparison.matched_by, "column", "run", "compared", "difference", comparison.matched_by
+    );
+    for note in &comparison.notes {
+        text.push_str(&format!("# {note}\n"));
+    }
+    for column in &comparison.columns {
+        if let Some(value) = column.largest() {
+            text.push_str(&format!(
+                "{:<22}{:>14.6}{:>14.6}{:>14.6}  {}\n",
+                column.name,
+                value.run,
+                value.compared,
+                value.difference(),
+                value.label
+            ));
+        }
+    }
+    text
+}

@@ -1,0 +1,27 @@
+//! The tasks that only write a text: report, completions, manual page.
+
+use std::io::{Write, stdout};
+
+use clap::CommandFactory;
+
+use crate::arguments::{Arguments, CompletionsArguments, ReportArguments};
+use crate::failure::Failure;
+
+pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    let path = kavics_report::write(&arguments.results, arguments.output.as_deref())?;
+    eprintln!("report: {}", path.display());
+    Ok(())
+}
+
+pub fn completions(arguments: &CompletionsArguments) -> Result<(), Failure> {
+    let mut command = Arguments::command();
+    let mut text = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command, "kavics", &mut text);
+    Ok(stdout().write_all(&text)?)
+}
+
+pub fn man() -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(Arguments::command()).render(&mut text)?;
+    Ok(stdout().write_all(&text)?)
+}

@@ -1,0 +1,88 @@
+//! From rows and columns to Parquet, and from bytes to a file published whole.
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_schema::{DataType, Field, Schema};
+use atomic_write_file::AtomicWriteFile;
+use parquet::arrow::ArrowWriter;
+use parquet::basic::Compression;
+use parquet::file::properties::WriterProperties;
+use parquet::schema::types::ColumnPath;
+
+use crate::ResultsError;
+use crate::column::{Column, Read};
+
+/// The rows as a Parquet file: the same bytes for the same rows.
+pub(crate) fn encode<R>(
+    path: &Path,
+    columns: &[Column<R>],
+    rows: &[R],
+) -> Result<Vec<u8>, ResultsError> {
+    let fields: Vec<Field> = columns.iter().map(field).collect();
+    let arrays = columns.iter().map(|column| array(column, rows)).collect();
+    let schema = Arc::new(Schema::new(fields));
+    let batch =
+        RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(ResultsError::table(path))?;
+    let mut writer = ArrowWriter::try_new(Vec::new(), schema, Some(properties(columns)))
+        .map_err(ResultsError::table(path))?;
+    writer.write(&batch).map_err(ResultsError::table(path))?;
+    writer.into_inner().map_err(ResultsError::table(path))
+}
+
+fn field<R>(column: &Column<R>) -> Field {
+    let kind = match column.read {
+        Read::Integer(_) => DataType::Int64,
+        Read::Number(_) => DataType::Float64,
+        Read::Text(_) => DataType::Utf8,
+    };
+    let unit = HashMap::from([("unit".to_owned(), column.unit.name().to_owned())]);
+    Field::new(&column.name, kind, true).with_metadata(unit)
+}
+
+fn array<R>(column: &Column<R>, rows: &[R]) -> ArrayRef {
+    match &column.read {
+        Read::Integer(read) => Arc::new(rows.iter().map(read).collect::<Int64Array>()),
+        Read::Number(read) => Arc::new(rows.iter().map(read).collect::<Float64Array>()),
+        Read::Text(read) => Arc::new(rows.iter().map(read).collect::<StringArray>()),
+    }
+}
+
+/// Words repeat and are kept in a dictionary; numbers hardly ever do.
+fn properties<R>(columns: &[Column<R>]) -> WriterProperties {
+    let mut properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_dictionary_enabled(false);
+    for column in columns {
+        if matches!(column.read, Read::Text(_)) {
+            let path = ColumnPath::from(column.name.as_str());
+            properties = properties.set_column_dictionary_enabled(path, true);
+        }
+    }
+    properties.build()
+}
+
+/// Writes a file aside, syncs it and renames it to `path`.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn publish(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
+    let write = || {
+        let mut file = AtomicWriteFile::open(path)?;
+        file.write_all(bytes)?;
+        file.commit()
+    };
+    write().map_err(ResultsError::unwritable(path))
+}
+
+/// Encodes rows and publishes them.
+pub(crate) fn publish_table<R>(
+    path: &Path,
+    columns: &[Column<R>],
+    rows: &[R],
+) -> Result<(), ResultsError> {
+    publish(path, &encode(path, columns, rows)?)
+}

@@ -1,0 +1,111 @@
+//! What can go wrong with a results folder.
+
+use std::path::{Path, PathBuf};
+
+use parquet::errors::ParquetError;
+use thiserror::Error;
+
+/// A file of a results folder could not be read or written.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// The folder is there already.
+    #[error("{} exists already; --force replaces it, -o names another folder", folder.display())]
+    Exists {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder holds something else, and is left alone.
+    #[error("{} is not a results folder (it has no run.json)", folder.display())]
+    NotResults {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file could not be read.
+    #[error("{}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A file could not be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A table could not be turned into Parquet, or back.
+    #[error("{}: {source}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: ParquetError,
+    },
+    /// A file of names and values could not be understood.
+    #[error("{}: {source}", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: serde_json::Error,
+    },
+    /// A table lacks a column.
+    #[error("{}: no column is called \"{column}\"", path.display())]
+    NoColumn {
+        /// The file.
+        path: PathBuf,
+        /// The column looked for.
+        column: String,
+    },
+    /// A column holds something else than looked for.
+    #[error("{}: column \"{column}\" does not hold {wanted}", path.display())]
+    WrongColumn {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// What it should hold.
+        wanted: &'static str,
+    },
+    /// The tables are of another scene than the one beside them.
+    #[error("{}: {table} has {found} rows where scene.toml makes {expected}", folder.display())]
+    OtherScene {
+        /// Results folder.
+        folder: PathBuf,
+        /// Table.
+        table: &'static str,
+        /// Its rows.
+        found: usize,
+        /// Rows that the scene makes.
+        expected: usize,
+    },
+    /// A file has an ending that no format belongs to.
+    #[error("{}: expected a file that ends in .csv or .parquet", path.display())]
+    UnknownEnding {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl ResultsError {
+    pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Unreadable { path, source }
+    }
+
+    pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::Unwritable { path, source }
+    }
+
+    pub(crate) fn table<E: Into<ParquetError>>(path: &Path) -> impl FnOnce(E) -> Self + use<E> {
+        let path = path.to_owned();
+        move |source| Self::Table {
+            path,
+            source: source.into(),
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Reading a results folder back, by column name.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
+use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
+use arrow_schema::{DataType, SchemaRef};
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
+use crate::ResultsError;
+use crate::record::RunRecord;
+
+/// A table read back, column by column.
+#[derive(Debug)]
+pub struct Columns {
+    path: PathBuf,
+    schema: SchemaRef,
+    batches: Vec<RecordBatch>,
+    rows: usize,
+}
+
+impl Columns {
+    /// Reads a Parquet file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds something else.
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        let file = File::open(path).map_err(ResultsError::unreadable(path))?;
+        let reader = ParquetRecordBatchReaderBuilder::try_new(file)
+            .and_then(|builder| builder.with_batch_size(1 << 16).build())
+            .map_err(ResultsError::table(path))?;
+        let schema = reader.schema();
+        let batches = reader
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(ResultsError::table(path))?;
+        let rows = batches.iter().map(RecordBatch::num_rows).sum();
+        Ok(Self {
+            path: path.to_owned(),
+            schema,
+            batches,
+            rows,
+        })
+    }
+
+    /// The names of the columns in their order.
+    pub fn names(&self) -> Vec<&str> {
+        let fields = self.schema.fields().iter();
+        fields.map(|field| field.name().as_str()).collect()
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// A column of numbers; NaN where there is none.
+    ///
+    /// # Errors
+    /// No such column, or one of words.
+    pub fn numbers(&self, column: &str) -> Result<Vec<f64>, ResultsError> {
+        self.gather(column, "numbers", |array| match array.data_type() {
+            DataType::Float64 => Some(values::<Float64Type, _>(array, f64::NAN, |v| v)),
+            DataType::Float32 => Some(values::<Float32Type, _>(array, f64::NAN, f64::from)),
+            DataType::Int64 => Some(values::<Int64Type, _>(array, f64::NAN, |v| v as f64)),
+            DataType::Int32 => Some(values::<Int32Type, _>(array, f64::NAN, f64::from)),
+            _ => None,
+        })
+    }
+
+    /// A column of counts or ids.
+    ///
+    /// # Errors
+    /// No such column, or one of other values.
+    pub fn integers(&self, column: &str) -> Result<Vec<Option<i64>>, ResultsError> {
+        self.gather(column, "whole numbers", |array| match array.data_type() {
+            DataType::Int64 => Some(values::<Int64Type, _>(array, None, Some)),
+            _ => None,
+        })
+    }
+
+    /// A column of words; empty where there is none.
+    ///
+    /// # Errors
+    /// No such column, or one of numbers.
+    pub fn texts(&self, column: &str) -> Result<Vec<&str>, ResultsError> {
+        self.gather(column, "words", |array| {
+            let words = array.as_string_opt::<i32>()?;
+            Some(words.iter().map(Option::unwrap_or_default).collect())
+        })
+    }
+
+    fn gather<'a, T>(
+        &'a self,
+        column: &str,
+        wanted: &'static str,
+        read: impl Fn(&'a dyn Array) -> Option<Vec<T>>,
+    ) -> Result<Vec<T>, ResultsError> {
+        if self.schema.field_with_name(column).is_err() {
+            return Err(ResultsError::NoColumn {
+                path: self.path.clone(),
+                column: column.to_owned(),
+            });
+        }
+        let mut all = Vec::with_capacity(self.rows);
+        for batch in &self.batches {
+            let array = &batch[column];
+            all.extend(
+                read(array.as_ref()).ok_or_else(|| ResultsError::WrongColumn {
+                    path: self.path.clone(),
+                    column: column.to_owned(),
+                    wanted,
+                })?,
+            );
+        }
+        Ok(all)
+    }
+}
+
+fn values<A: ArrowPrimitiveType, T: Clone>(
+    array: &dyn Array,
+    none: T,
+    turn: impl Fn(A::Native) -> T,
+) -> Vec<T> {
+    let array = array.as_primitive::<A>();
+    array
+        .iter()
+        .map(|value| value.map_or_else(|| none.clone(), &turn))
+        .collect()
+}
+
+/// A results folder, read only.
+#[derive(Clone, Debug)]
+pub struct ResultsFolder {
+    path: PathBuf,
+}
+
+impl ResultsFolder {
+    /// The results folder at `path`.
+    ///
+    /// # Errors
+    /// A folder without `run.json`.
+    pub fn open(path: &Path) -> Result<Self, ResultsError> {
+        if path.join("run.json").is_file() {
+            return Ok(Self {
+                path: path.to_owned(),
+            });
+        }
+        Err(match fs::metadata(path) {
+            Ok(_) => ResultsError::NotResults {
+                folder: path.to_owned(),
+            },
+            Err(source) => ResultsError::unreadable(path)(source),
+        })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What ran, and how it ended.
+    ///
+    /// # Errors
+    /// A `run.json` that cannot be read.
+    pub fn record(&self) -> Result<RunRecord, ResultsError> {
+        let path = self.path.join("run.json");
+        let text = self.text("run.json")?;
+        serde_json::from_str(&text).map_err(|source| ResultsError::Json { path, source })
+    }
+
+    /// The scene as it ran.
+    ///
+    /// # Errors
+    /// A `scene.toml` that cannot be read.
+    pub fn scene(&self) -> Result<String, ResultsError> {
+        self.text("scene.toml")
+    }
+
+    /// The table that the scene sets beside the run.
+    ///
+    /// # Errors
+    /// A `compare.csv` that is there and cannot be read.
+    pub fn compared(&self) -> Result<Option<String>, ResultsError> {
+        if self.path.join("compare.csv").exists() {
+            self.text("compare.csv").map(Some)
+        } else {
+            Ok(None)
+        }
+    }
+
+    /// The table `steps`.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn steps(&self) -> Result<Columns, ResultsError> {
+        Columns::read(&self.path.join("steps.parquet"))
+    }
+
+    /// The table `events`.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn events(&self) -> Result<Columns, ResultsError> {
+        Columns::read(&self.path.join("events.parquet"))
+    }
+
+    /// The table `grains` at a recorded load step.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn grains(&self, step: usize) -> Result<Columns, ResultsError> {
+        self.recorded("grains", step)
+    }
+
+    /// The table `contacts` at a recorded load step.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn contacts(&self, step: usize) -> Result<Columns, ResultsError> {
+        self.recorded("contacts", step)
+    }
+
+    /// The table `sides` at a recorded load step.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn sides(&self, step: usize) -> Result<Columns, ResultsError> {
+        self.recorded("sides", step)
+    }
+
+    /// The recorded load steps in order, 0 first.
+    ///
+    /// # Errors
+    /// A folder that cannot be listed.
+    pub fn recorded_steps(&self) -> Result<Vec<usize>, ResultsError> {
+        let folder = self.path.join("grains");
+        let unreadable = |source| ResultsError::unreadable(&folder)(source);
+        let mut steps = Vec::new();
+        for entry in fs::read_dir(&folder).map_err(unreadable)? {
+            let name = entry.map_err(unreadable)?.file_name();
+            let step: Option<usize> = name
+                .to_str()
+                .and_then(|name| name.strip_suffix(".parquet"))
+                .and_then(|number| number.parse().ok());
+            steps.extend(step);
+        }
+        steps.sort_unstable();
+        Ok(steps)
+    }
+
+    fn recorded(&self, table: &str, step: usize) -> Result<Columns, ResultsError> {
+        Columns::read(&recorded_path(&self.path, table, step))
+    }
+
+    fn text(&self, name: &str) -> Result<String, ResultsError> {
+        let path = self.path.join(name);
+        fs::read_to_string(&path).map_err(ResultsError::unreadable(&path))
+    }
+}
+
+/// The file of a table at a recorded load step.
+pub(crate) fn recorded_path(folder: &Path, table: &str, step: usize) -> PathBuf {
+    folder.join(table).join(format!("{step:06}.parquet"))
+}

@@ -1,0 +1,53 @@
+//! Lists of grains: x, y and radius, read from and written to csv or Parquet.
+
+use std::path::Path;
+
+use kavics::assembly::Grain;
+
+use crate::column::{Column, Unit};
+use crate::encode::{publish, publish_table};
+use crate::{Columns, ResultsError};
+
+/// Reads x, y and radius of grains from a Parquet file with columns of these names.
+///
+/// # Errors
+/// A sentence that says what is wrong with the file.
+pub fn read_grains(path: &Path) -> Result<Vec<[f64; 3]>, String> {
+    let table = Columns::read(path).map_err(|error| error.to_string())?;
+    let column = |name: &str| table.numbers(name).map_err(|error| error.to_string());
+    let (x, y, radius) = (column("x")?, column("y")?, column("radius")?);
+    Ok((0..table.len())
+        .map(|row| [x[row], y[row], radius[row]])
+        .collect())
+}
+
+/// Writes x, y and radius of grains to a file, csv or parquet by its ending.
+///
+/// # Errors
+/// Another ending; a file that cannot be written.
+pub fn write_grains(path: &Path, grains: &[Grain]) -> Result<(), ResultsError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("parquet") => publish_table(path, &columns(), grains),
+        Some("csv") => publish(path, grains_csv(grains).as_bytes()),
+        _ => Err(ResultsError::UnknownEnding {
+            path: path.to_owned(),
+        }),
+    }
+}
+
+/// Grains as csv, with a line of names; every number reads back as the same bits.
+pub fn grains_csv(grains: &[Grain]) -> String {
+    let mut text = String::from("x,y,radius\n");
+    for Grain { centre, radius } in grains {
+        text.push_str(&format!("{},{},{radius}\n", centre.x, centre.y));
+    }
+    text
+}
+
+fn columns() -> Vec<Column<Grain>> {
+    vec![
+        Column::number("x", Unit::Length, |g: &Grain| g.centre.x),
+        Column::number("y", Unit::Length, |g: &Grain| g.centre.y),
+        Column::number("radius", Unit::Length, |g: &Grain| g.radius),
+    ]
+}

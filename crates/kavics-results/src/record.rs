@@ -1,0 +1,60 @@
+//! `run.json`: what ran, and how it ended.
+
+use serde::{Deserialize, Serialize};
+
+/// Version of the tables; rises when a column changes its meaning.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunState {
+    /// Under way, or broken off without a word.
+    #[default]
+    Running,
+    /// Every load step done.
+    Done,
+    /// A load step has no equilibrium; the steps before it are valid.
+    NoEquilibrium,
+    /// Stopped from outside.
+    Stopped,
+}
+
+impl RunState {
+    /// The state in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Running => "running",
+            Self::Done => "done",
+            Self::NoEquilibrium => "no equilibrium",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// What ran, and how it ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// Version of kavics.
+    pub version: String,
+    /// Version of the tables.
+    pub schema_version: u32,
+    /// Title of the scene.
+    pub title: String,
+    /// Seed of the scene.
+    pub seed: u64,
+    /// Threads.
+    pub threads: usize,
+    /// Number of grains.
+    pub grains: usize,
+    /// Number of contacts.
+    pub contacts: usize,
+    /// Grains of the window.
+    pub window_grains: usize,
+    /// How far it has come.
+    pub state: RunState,
+    /// Why there is no equilibrium.
+    pub failure: Option<String>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}

@@ -1,0 +1,413 @@
+//! Writing a results folder, one equilibrium after the other.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use kavics::assembly::{Grain, Partner, Side};
+use kavics::equilibrium::{Equilibrium, EventKind, Iterate, Load, State};
+use kavics::ids::{BodyId, GrainId, Id, PerBody, PerGrain, SideId};
+use kavics::measure::{Measures, Tensor};
+use kavics::scene::Scene;
+
+use crate::ResultsError;
+use crate::contacts::{ContactRow, contact_columns};
+use crate::encode::{publish, publish_table};
+use crate::events::{EventRow, event_columns};
+use crate::folder::recorded_path;
+use crate::grains::{GrainRow, grain_columns};
+use crate::log::Log;
+use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
+use crate::sides::{SideRow, side_columns};
+use crate::steps::{StepRow, iterate_columns, step_columns};
+use crate::warning::warning_text;
+
+/// Tables that grow are written again at most this often.
+const BETWEEN_WRITES: Duration = Duration::from_millis(500);
+
+/// How a results folder is made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Threads of the run, for `run.json`.
+    pub threads: usize,
+    /// Whether a results folder that is there already is replaced.
+    pub replace: bool,
+}
+
+/// A results folder that is being written.
+///
+/// Tables of the load steps grow with the run and are complete after [`Results::finish`]; a table of grains,
+/// contacts or sides is written when its load step is pushed.
+#[derive(Debug)]
+pub struct Results<'a> {
+    scene: &'a Scene,
+    folder: PathBuf,
+    record: RunRecord,
+    steps: Vec<StepRow>,
+    iterates: Vec<StepRow>,
+    events: Vec<EventRow>,
+    broken: usize,
+    held: PerGrain<bool>,
+    unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
+    log: Log,
+    written: Instant,
+}
+
+impl<'a> Results<'a> {
+    /// Makes the folder, and in it the scene and `run.json`.
+    ///
+    /// # Errors
+    /// A folder that is there already and is not to be replaced, or is no results folder; files that cannot be
+    /// written.
+    pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
+        make_room(folder, options.replace)?;
+        for name in ["grains", "contacts", "sides"] {
+            let path = folder.join(name);
+            fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
+        }
+        let results = Self {
+            scene,
+            folder: folder.to_owned(),
+            record: record(scene, options),
+            steps: Vec::new(),
+            iterates: Vec::new(),
+            events: Vec::new(),
+            broken: 0,
+            held: held_grains(scene),
+            unrecorded: None,
+            log: Log::open(),
+            written: Instant::now(),
+        };
+        publish(&folder.join("scene.toml"), scene.text.as_bytes())?;
+        if let Some(compared) = &scene.compare {
+            let table = fs::read(compared).map_err(ResultsError::unreadable(compared))?;
+            publish(&folder.join("compare.csv"), &table)?;
+        }
+        results.write_growing()?;
+        Ok(results)
+    }
+
+    /// Adds an equilibrium; step 0 is the state before loading, and no row of `steps`.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn push(
+        &mut self,
+        equilibrium: &Equilibrium,
+        measures: &Measures,
+        grain_stress: &PerGrain<Tensor>,
+    ) -> Result<(), ResultsError> {
+        self.add_events(equilibrium);
+        if equilibrium.step > 0 {
+            self.steps.push(self.step_row(equilibrium, measures));
+        }
+        self.log.note_step(equilibrium.step, equilibrium.iterations);
+        if equilibrium
+            .step
+            .is_multiple_of(self.scene.record_every.max(1))
+        {
+            self.unrecorded = None;
+            self.write_recorded(equilibrium, grain_stress)?;
+        } else {
+            self.unrecorded = Some((equilibrium.clone(), grain_stress.clone()));
+        }
+        if self.written.elapsed() > BETWEEN_WRITES {
+            self.write_growing()?;
+            self.written = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Adds a state on the way to `equilibrium`, before or after the equilibrium itself.
+    pub fn push_iterate(
+        &mut self,
+        equilibrium: &Equilibrium,
+        iterate: &Iterate,
+        measures: &Measures,
+    ) {
+        let row = StepRow {
+            iterations: iterate.iteration,
+            residual: iterate.residual,
+            energy: None,
+            iteration: Some(iterate.iteration),
+            ..self.row_of_state(equilibrium, &iterate.state, measures)
+        };
+        self.iterates.push(row);
+    }
+
+    /// The rows of `steps` so far.
+    pub fn steps(&self) -> &[StepRow] {
+        &self.steps
+    }
+
+    /// What the user should know so far: of the scene, then of the load steps.
+    pub fn warnings(&self) -> &[String] {
+        &self.record.warnings
+    }
+
+    /// Adds a sentence that the user should know.
+    pub fn warn(&mut self, warning: String) {
+        self.record.warnings.push(warning);
+    }
+
+    /// Writes all that has not been written, and how the run ended; `failure` says why there is no equilibrium.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn finish(
+        mut self,
+        state: RunState,
+        failure: Option<String>,
+    ) -> Result<Vec<StepRow>, ResultsError> {
+        if let Some((equilibrium, grain_stress)) = self.unrecorded.take() {
+            self.write_recorded(&equilibrium, &grain_stress)?;
+        }
+        self.record.state = state;
+        self.record.failure = failure;
+        self.log.note(state.name());
+        self.write_growing()?;
+        Ok(self.steps)
+    }
+
+    fn add_events(&mut self, equilibrium: &Equilibrium) {
+        let step = equilibrium.step;
+        for &event in &equilibrium.events {
+            self.broken += usize::from(matches!(event.kind, EventKind::Broke { .. }));
+            let number = self.events.len();
+            self.events.push(EventRow {
+                number,
+                step,
+                event,
+            });
+        }
+        let warnings = equilibrium.warnings.iter();
+        self.record
+            .warnings
+            .extend(warnings.map(|warning| warning_text(step, warning)));
+    }
+
+    fn step_row(&self, equilibrium: &Equilibrium, measures: &Measures) -> StepRow {
+        StepRow {
+            iterations: equilibrium.iterations,
+            residual: equilibrium.residual,
+            energy: Some(equilibrium.energy),
+            ..self.row_of_state(equilibrium, &equilibrium.state, measures)
+        }
+    }
+
+    fn row_of_state(
+        &self,
+        equilibrium: &Equilibrium,
+        state: &State,
+        measures: &Measures,
+    ) -> StepRow {
+        let broken = equilibrium
+            .events
+            .iter()
+            .filter(|event| matches!(event.kind, EventKind::Broke { .. }));
+        let stage = self.scene.program.stages.get(equilibrium.stage);
+        let active = self.active_contacts(state);
+        StepRow {
+            step: equilibrium.step,
+            stage: stage.map(|stage| stage.name.clone()).unwrap_or_default(),
+            load_factor: equilibrium.load_factor,
+            cuts: equilibrium.cuts,
+            contacts: active_count(state),
+            broken: self.broken,
+            broken_in_step: broken.count(),
+            rattlers: active.values().iter().filter(|&&count| count == 0).count(),
+            measures: *measures,
+            ..StepRow::default()
+        }
+    }
+
+    /// Active contacts of each grain.
+    fn active_contacts(&self, state: &State) -> PerGrain<usize> {
+        let assembly = &self.scene.assembly;
+        let mut counts = PerGrain::filled(0, assembly.grains.len());
+        for (id, contact) in assembly.contacts.iter() {
+            if state.contacts[id].is_active() {
+                for grain in contact.grains() {
+                    counts[grain] += 1;
+                }
+            }
+        }
+        counts
+    }
+
+    fn write_recorded(
+        &self,
+        equilibrium: &Equilibrium,
+        grain_stress: &PerGrain<Tensor>,
+    ) -> Result<(), ResultsError> {
+        let path = |table| recorded_path(&self.folder, table, equilibrium.step);
+        let grains = self.grain_rows(equilibrium, grain_stress);
+        publish_table(&path("grains"), &grain_columns(), &grains)?;
+        let contacts = self.contact_rows(equilibrium);
+        publish_table(&path("contacts"), &contact_columns(), &contacts)?;
+        let sides = self.side_rows(equilibrium);
+        publish_table(&path("sides"), &side_columns(), &sides)
+    }
+
+    fn grain_rows(
+        &self,
+        equilibrium: &Equilibrium,
+        grain_stress: &PerGrain<Tensor>,
+    ) -> Vec<GrainRow> {
+        let assembly = &self.scene.assembly;
+        let contacts = self.active_contacts(&equilibrium.state);
+        let row = |(id, grain): (GrainId, &Grain)| {
+            let body = assembly.body(Partner::Grain(id));
+            GrainRow {
+                step: equilibrium.step,
+                id: id.index(),
+                grain: *grain,
+                displacement: equilibrium.state.displacements[body],
+                load: load_and_reaction(equilibrium, body),
+                contacts: contacts[id],
+                cell_area: assembly.cell_area[id],
+                stress: grain_stress[id],
+                state: self.grain_state(equilibrium, id, contacts[id]),
+            }
+        };
+        assembly.grains.iter().map(row).collect()
+    }
+
+    fn grain_state(
+        &self,
+        equilibrium: &Equilibrium,
+        grain: GrainId,
+        contacts: usize,
+    ) -> &'static str {
+        let set_aside = equilibrium.set_aside.values().get(grain.index());
+        if self.held[grain] {
+            "held"
+        } else if contacts == 0 {
+            "rattler"
+        } else if set_aside.is_some_and(|&aside| aside) {
+            "loose"
+        } else {
+            "free"
+        }
+    }
+
+    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow> {
+        let contacts = self.scene.assembly.contacts.iter();
+        let properties = &self.scene.properties;
+        let step = equilibrium.step;
+        contacts
+            .map(|(id, contact)| {
+                let state = &equilibrium.state.contacts[id];
+                ContactRow::new(step, id.index(), contact, state, properties)
+            })
+            .collect()
+    }
+
+    fn side_rows(&self, equilibrium: &Equilibrium) -> Vec<SideRow> {
+        let assembly = &self.scene.assembly;
+        let present = assembly.sides.iter().filter(|(_, side)| side.present);
+        let row = |(id, side): (SideId, &Side)| {
+            let body = assembly.body(Partner::Side(id));
+            SideRow {
+                step: equilibrium.step,
+                id: id.index(),
+                name: side.name.clone(),
+                displacement: equilibrium.state.displacements[body],
+                load: load_and_reaction(equilibrium, body),
+            }
+        };
+        present.map(row).collect()
+    }
+
+    fn write_growing(&self) -> Result<(), ResultsError> {
+        let path = |name| self.folder.join(name);
+        publish_table(&path("steps.parquet"), &step_columns(), &self.steps)?;
+        publish_table(&path("events.parquet"), &event_columns(), &self.events)?;
+        if self.scene.settings.keep_iterates {
+            let columns = iterate_columns();
+            publish_table(&path("iterations.parquet"), &columns, &self.iterates)?;
+        }
+        let mut record = serde_json::to_string_pretty(&self.record).expect("words are JSON");
+        record.push('\n');
+        publish(&path("run.json"), record.as_bytes())?;
+        publish(&path("log.ndjson"), self.log.text().as_bytes())
+    }
+}
+
+fn record(scene: &Scene, options: Options) -> RunRecord {
+    RunRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        schema_version: SCHEMA_VERSION,
+        title: scene.title.clone(),
+        seed: scene.seed,
+        threads: options.threads,
+        grains: scene.assembly.grains.len(),
+        contacts: scene.assembly.contacts.len(),
+        window_grains: scene.window.len(),
+        state: RunState::Running,
+        failure: None,
+        warnings: scene.warnings.clone(),
+    }
+}
+
+/// Whether results can be written to `folder`: it is not there, or empty, or results that are to be replaced.
+/// Nothing is touched.
+///
+/// # Errors
+/// A results folder that is not to be replaced; any other folder with something in it; a file.
+pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
+    let empty = match fs::read_dir(folder) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(_) => !folder.exists(),
+    };
+    let folder = folder.to_owned();
+    if empty {
+        Ok(())
+    } else if !folder.join("run.json").is_file() {
+        Err(ResultsError::NotResults { folder })
+    } else if replace {
+        Ok(())
+    } else {
+        Err(ResultsError::Exists { folder })
+    }
+}
+
+fn make_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
+    check_room(folder, replace)?;
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(ResultsError::unwritable(folder))?;
+    }
+    Ok(())
+}
+
+/// Grains of which some freedom is held or moved.
+fn held_grains(scene: &Scene) -> PerGrain<bool> {
+    let program = &scene.program;
+    let bodies = program.held.iter().map(|held| held.body);
+    let moved = program.prescribed.iter().map(|moved| moved.body);
+    let mut held = PerGrain::filled(false, scene.assembly.grains.len());
+    for body in bodies.chain(moved) {
+        if let Partner::Grain(grain) = scene.assembly.partner(body) {
+            held[grain] = true;
+        }
+    }
+    held
+}
+
+fn active_count(state: &State) -> usize {
+    let contacts = state.contacts.values().iter();
+    contacts.filter(|contact| contact.is_active()).count()
+}
+
+fn load_and_reaction(equilibrium: &Equilibrium, body: BodyId) -> Load {
+    let at = |loads: &PerBody<Load>| {
+        let load = loads.values().get(body.index());
+        load.copied().unwrap_or_default()
+    };
+    let (load, reaction) = (at(&equilibrium.loads), at(&equilibrium.reactions));
+    Load {
+        x: load.x + reaction.x,
+        y: load.y + reaction.y,
+        moment: load.moment + reaction.moment,
+    }
+}

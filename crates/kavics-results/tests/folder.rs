@@ -1,0 +1,226 @@
+//! What stands in a results folder, and that it reads back.
+
+mod block;
+
+use std::fs;
+
+use kavics::ids::{ContactId, GrainId, Id, PerGrain};
+use kavics::measure::Tensor;
+use kavics_results::{
+    Columns, Options, Recorded, Results, ResultsError, ResultsFolder, RunState, check_room,
+    read_grains, write_grains, write_steps,
+};
+
+fn place() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+#[test]
+fn steps_has_the_columns_of_the_contract_in_their_order() {
+    let contract = "step stage load_factor iterations residual cuts contacts broken broken_in_step rattlers \
+        coordination_number void_ratio graph_porosity graph_porosity_printed window_area \
+        fabric_xx fabric_xy fabric_yy fabric_length_xx fabric_length_xy fabric_length_yy \
+        branch_xx branch_xy branch_yy contact_xx contact_xy contact_yy \
+        stress_xx stress_xy stress_yx stress_yy \
+        shear_stress_xx shear_stress_xy shear_stress_yx shear_stress_yy \
+        variation_stress_xx variation_stress_xy variation_stress_yx variation_stress_yy \
+        fabric_stress_xx fabric_stress_xy fabric_stress_yx fabric_stress_yy isotropic_stress \
+        strain_xx strain_xy strain_yx strain_yy contact_work macroscopic_work boundary_work \
+        external_work elastic_energy fracture_energy friction_work nonpotential_work release_energy ledger_error";
+    let names: Vec<String> = kavics_results::step_columns()
+        .into_iter()
+        .map(|column| column.name)
+        .collect();
+    assert_eq!(names.join(" "), contract);
+}
+
+#[test]
+fn tables_of_a_recorded_step_have_the_columns_of_the_contract() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    block::write(&folder, &block::scene(7, 5));
+    let results = ResultsFolder::open(&folder).unwrap();
+    let names = |table: Columns| table.names().join(" ");
+    assert_eq!(
+        names(results.grains(0).unwrap()),
+        "step grain x y radius ux uy rotation fx fy moment contacts cell_area stress_xx stress_xy stress_yx \
+         stress_yy state"
+    );
+    assert_eq!(
+        names(results.contacts(0).unwrap()),
+        "step contact first second nx ny branch_length dual_length dual_length_full opening shear \
+         relative_rotation normal_force shear_force bending_moment property law state x y"
+    );
+    assert_eq!(
+        names(results.sides(0).unwrap()),
+        "step side name ux uy rotation fx fy moment"
+    );
+    assert_eq!(
+        names(results.events().unwrap()),
+        "event step iteration load_factor contact grain kind mode fracture_energy release_energy avalanche"
+    );
+}
+
+#[test]
+fn what_was_pushed_reads_back() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    block::write(&folder, &scene);
+    let results = ResultsFolder::open(&folder).unwrap();
+    let steps = results.steps().unwrap();
+    assert_eq!(steps.numbers("load_factor").unwrap(), block::FACTORS[1..]);
+    assert_eq!(steps.texts("stage").unwrap(), ["compression"; 5]);
+    assert_eq!(steps.integers("broken").unwrap(), [0, 0, 0, 0, 3].map(Some));
+    let grains = results.grains(5).unwrap();
+    let expected = block::equilibrium(&scene, 5).state;
+    let uy = grains.numbers("uy").unwrap();
+    assert_eq!(uy[31], expected.displacements.values()[31].y);
+    assert_eq!(results.record().unwrap().state, RunState::Done);
+    assert_eq!(results.recorded_steps().unwrap(), [0, 1, 2, 3, 4, 5]);
+}
+
+#[test]
+fn a_recorded_step_is_the_state_that_was_pushed() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    block::write(&folder, &scene);
+    let folder = ResultsFolder::open(&folder).unwrap();
+    let recorded = Recorded::read(&folder, 5, &scene).unwrap();
+    let pushed = block::equilibrium(&scene, 5).state;
+    assert_eq!(recorded.state.contacts, pushed.contacts);
+    assert_eq!(recorded.state.displacements, pushed.displacements);
+    assert_eq!(folder.step_rows().unwrap()[4].broken, 3);
+}
+
+#[test]
+fn a_measure_of_an_empty_window_is_null() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    let stress = PerGrain::filled(Tensor::default(), 32);
+    let mut results = Results::create(&folder, &scene, Options::default()).unwrap();
+    results
+        .push(
+            &block::equilibrium(&scene, 1),
+            &kavics::measure::Measures::default(),
+            &stress,
+        )
+        .unwrap();
+    results.finish(RunState::Done, None).unwrap();
+    let steps = ResultsFolder::open(&folder).unwrap().steps().unwrap();
+    assert!(steps.numbers("stress_yy").unwrap()[0].is_nan());
+}
+
+#[test]
+fn the_last_step_is_recorded_whatever_the_interval() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let mut scene = block::scene(7, 5);
+    scene.record_every = 3;
+    block::write(&folder, &scene);
+    let folder = ResultsFolder::open(&folder).unwrap();
+    assert_eq!(folder.recorded_steps().unwrap(), [0, 3, 5]);
+}
+
+#[test]
+fn two_runs_write_the_same_bytes() {
+    let place = place();
+    let scene = block::scene(7, 5);
+    let [first, second] = ["a", "b"].map(|name| place.path().join(name));
+    block::write(&first, &scene);
+    block::write(&second, &scene);
+    assert_eq!(block::files(&first), block::files(&second));
+}
+
+#[test]
+fn states_of_grains_and_contacts_have_their_words() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    block::write(&folder, &block::scene(7, 5));
+    let folder = ResultsFolder::open(&folder).unwrap();
+    let grains = folder.grains(5).unwrap();
+    assert_eq!(
+        grains.texts("state").unwrap()[..6],
+        ["held", "held", "held", "held", "held", "free"]
+    );
+    let contacts = folder.contacts(5).unwrap();
+    let states = contacts.texts("state").unwrap();
+    assert_eq!(states.iter().filter(|state| **state == "broken").count(), 3);
+    assert_eq!(contacts.integers("second").unwrap().last(), Some(&Some(-3)));
+}
+
+#[test]
+fn finished_results_are_not_replaced_unasked() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    block::write(&folder, &block::scene(7, 5));
+    let before = block::files(&folder);
+    assert!(matches!(
+        check_room(&folder, false),
+        Err(ResultsError::Exists { .. })
+    ));
+    assert_eq!(block::files(&folder), before);
+    assert!(check_room(&folder, true).is_ok());
+}
+
+#[test]
+fn a_folder_that_holds_something_else_is_never_replaced() {
+    let place = place();
+    fs::write(place.path().join("thesis.tex"), "all of it").unwrap();
+    assert!(matches!(
+        check_room(place.path(), true),
+        Err(ResultsError::NotResults { .. })
+    ));
+}
+
+#[test]
+fn grains_read_back_as_the_same_bits() {
+    let place = place();
+    let scene = block::scene(7, 5);
+    let path = place.path().join("pack.parquet");
+    write_grains(&path, scene.assembly.grains.values()).unwrap();
+    let read = read_grains(&path).unwrap();
+    let grain = scene.assembly.grains[GrainId(31)];
+    assert_eq!(read[31], [grain.centre.x, grain.centre.y, grain.radius]);
+}
+
+#[test]
+fn a_grain_list_without_radii_is_named() {
+    let place = place();
+    let path = place.path().join("pack.parquet");
+    write_steps(&path, &[]).unwrap();
+    let message = read_grains(&path).unwrap_err();
+    assert!(message.ends_with("no column is called \"x\""), "{message}");
+}
+
+#[test]
+fn only_csv_and_parquet_are_written() {
+    let place = place();
+    let path = place.path().join("pack.xlsx");
+    assert!(matches!(
+        write_grains(&path, &[]),
+        Err(ResultsError::UnknownEnding { .. })
+    ));
+}
+
+#[test]
+fn an_event_names_its_contact_and_no_grain() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    block::write(&folder, &scene);
+    let events = ResultsFolder::open(&folder).unwrap().events().unwrap();
+    let broken: Vec<i64> = block::equilibrium(&scene, 5)
+        .state
+        .contacts
+        .iter()
+        .filter(|(_, state)| state.broken)
+        .map(|(id, _): (ContactId, _)| id.index() as i64)
+        .collect();
+    let contacts = events.integers("contact").unwrap();
+    assert_eq!(contacts, broken.into_iter().map(Some).collect::<Vec<_>>());
+    assert_eq!(events.integers("grain").unwrap(), [None; 3]);
+    assert_eq!(events.texts("mode").unwrap(), ["tension"; 3]);
+}

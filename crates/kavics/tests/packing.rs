@@ -1,0 +1,305 @@
+//! Invariants of dropped packs.
+
+use kavics::assembly::Grain;
+use kavics::geometry::Vector;
+use kavics::ids::{GrainId, Id, PerGrain};
+use kavics::packing::dropped::{drop, fill};
+use kavics::packing::statistics::{packing_fraction, sieve_curve};
+use kavics::packing::{Dropped, Mass, PackingError, SieveCurve, Sizes, Support};
+
+const SEED: u64 = 1;
+
+fn uniform(from: f64, to: f64) -> Sizes {
+    Sizes::Uniform { from, to }
+}
+
+fn graded(mass: Mass) -> SieveCurve {
+    SieveCurve {
+        diameter: vec![1.0, 2.0, 4.0],
+        passing: vec![0.0, 0.6, 1.0],
+        mass,
+    }
+}
+
+fn pack(sizes: &Sizes, count: usize, width: f64, seed: u64) -> Dropped {
+    let radii = sizes.radii(count, seed).unwrap();
+    drop(width, &radii, 1, None, seed).unwrap()
+}
+
+fn gap(one: &Grain, other: &Grain) -> f64 {
+    (other.centre - one.centre).length() - one.radius - other.radius
+}
+
+/// Every pair of grains whose gap is below `limit`, by a sweep over x.
+fn near_pairs(grains: &PerGrain<Grain>, limit: f64) -> Vec<(GrainId, GrainId, f64)> {
+    let mut order: Vec<GrainId> = grains.ids().collect();
+    order.sort_by(|&a, &b| grains[a].centre.x.total_cmp(&grains[b].centre.x));
+    let largest = grains.values().iter().fold(0.0_f64, |a, g| a.max(g.radius));
+    let mut pairs = Vec::new();
+    for (place, &a) in order.iter().enumerate() {
+        for &b in &order[place + 1..] {
+            if grains[b].centre.x - grains[a].centre.x > 2.0 * largest + limit {
+                break;
+            }
+            let gap = gap(&grains[a], &grains[b]);
+            if gap < limit {
+                pairs.push((a.min(b), a.max(b), gap));
+            }
+        }
+    }
+    pairs
+}
+
+/// Largest rounding of a pack: a few units in the last place of its height.
+fn rounding(grains: &PerGrain<Grain>) -> f64 {
+    let height = grains
+        .values()
+        .iter()
+        .fold(0.0_f64, |a, g| a.max(g.centre.y));
+    16.0 * f64::EPSILON * height.max(1.0)
+}
+
+fn assert_in_the_box(dropped: &Dropped, width: f64) {
+    for grain in dropped.grains.values() {
+        let Grain { centre, radius } = *grain;
+        let slack = 1e-12 * width;
+        assert!(centre.y >= radius, "{grain:?} below the floor");
+        assert!(centre.x >= radius - slack, "{grain:?} beyond the left side");
+        assert!(
+            centre.x <= width - radius + slack,
+            "{grain:?} beyond the right side"
+        );
+    }
+}
+
+fn assert_no_overlap(dropped: &Dropped) {
+    let mean = dropped
+        .grains
+        .values()
+        .iter()
+        .map(|g| g.radius)
+        .sum::<f64>()
+        / dropped.grains.len() as f64;
+    for (a, b, gap) in near_pairs(&dropped.grains, 0.0) {
+        assert!(gap > -1e-9 * mean, "grains {a} and {b} overlap by {}", -gap);
+    }
+}
+
+fn assert_stable(dropped: &Dropped, width: f64) {
+    let rounding = rounding(&dropped.grains);
+    for (id, supports) in dropped.supports.iter() {
+        let grain = dropped.grains[id];
+        let Some(second) = supports.second else {
+            assert_eq!(supports.first, Support::Floor);
+            assert_eq!(grain.centre.y, grain.radius);
+            continue;
+        };
+        let mut span = [f64::INFINITY, f64::NEG_INFINITY];
+        for support in [supports.first, second] {
+            let x = match support {
+                Support::Grain(below) => {
+                    assert!(below < id, "{id} rests on {below}, which came later");
+                    assert!(gap(&grain, &dropped.grains[below]).abs() < rounding);
+                    dropped.grains[below].centre.x
+                }
+                Support::Left => grain.centre.x - grain.radius,
+                Support::Right => grain.centre.x + grain.radius,
+                Support::Floor => grain.centre.x,
+            };
+            if support == Support::Left {
+                assert_eq!(grain.centre.x, grain.radius);
+            }
+            if support == Support::Right {
+                assert_eq!(grain.centre.x, width - grain.radius);
+            }
+            span = [span[0].min(x), span[1].max(x)];
+        }
+        assert!(
+            span[0] <= grain.centre.x && grain.centre.x <= span[1],
+            "{id} rolls off"
+        );
+    }
+}
+
+/// Contacts are the supports: two a grain, one on the bare floor.
+fn assert_isostatic(dropped: &Dropped) {
+    let on_floor_only = dropped
+        .supports
+        .values()
+        .iter()
+        .filter(|s| s.second.is_none())
+        .count();
+    let all = dropped
+        .supports
+        .values()
+        .iter()
+        .flat_map(|s| [Some(s.first), s.second])
+        .flatten();
+    let (between, with_sides): (Vec<Support>, Vec<Support>) =
+        all.partition(|s| matches!(s, Support::Grain(_)));
+    assert_eq!(
+        between.len() + with_sides.len(),
+        2 * dropped.grains.len() - on_floor_only
+    );
+    assert_eq!(near_pairs(&dropped.grains, 1e-9).len(), between.len());
+}
+
+fn interior_fraction(dropped: &Dropped, width: f64, margin: f64) -> f64 {
+    let top = dropped
+        .grains
+        .values()
+        .iter()
+        .fold(0.0_f64, |a, g| a.max(g.centre.y));
+    packing_fraction(
+        &dropped.grains,
+        Vector::new(margin, margin),
+        Vector::new(width - margin, top - 2.0 * margin),
+    )
+}
+
+#[test]
+fn a_dropped_pack_is_stable_and_without_overlap() {
+    let cases = [
+        (uniform(0.9, 1.1), 10_000, 150.0),
+        (uniform(0.5, 1.5), 10_000, 150.0),
+        (Sizes::Sieve(graded(Mass::Disc)), 3000, 60.0),
+        (uniform(0.02, 2.0), 3000, 40.0),
+    ];
+    for (sizes, count, width) in cases {
+        let dropped = pack(&sizes, count, width, SEED);
+        assert_eq!(dropped.grains.len(), count);
+        assert_in_the_box(&dropped, width);
+        assert_no_overlap(&dropped);
+        assert_stable(&dropped, width);
+        assert_isostatic(&dropped);
+    }
+}
+
+#[test]
+fn equal_grains_in_narrow_boxes_come_to_rest() {
+    for width in [2.0, 2.5, 3.0, 4.0, 6.0, 8.0, 20.0] {
+        let dropped = pack(&uniform(1.0, 1.0), 300, width, SEED);
+        assert_in_the_box(&dropped, width);
+        assert_no_overlap(&dropped);
+        assert_stable(&dropped, width);
+    }
+}
+
+#[test]
+fn the_packing_fraction_is_that_of_the_literature() {
+    // Published for single drops in two dimensions: about 0.80 to 0.82 (Visscher & Bolsterli, 1972).
+    for (from, to) in [(0.9, 1.1), (0.5, 1.5)] {
+        let dropped = pack(&uniform(from, to), 10_000, 200.0, SEED);
+        let fraction = interior_fraction(&dropped, 200.0, 8.0);
+        assert!(
+            (0.805..0.818).contains(&fraction),
+            "{from} to {to}: {fraction}"
+        );
+    }
+}
+
+#[test]
+fn the_lowest_of_ten_drops_packs_denser() {
+    let radii = uniform(0.5, 1.5).radii(5000, SEED).unwrap();
+    let once = drop(120.0, &radii, 1, None, SEED).unwrap();
+    let lowest = drop(120.0, &radii, 10, None, SEED).unwrap();
+    assert_stable(&lowest, 120.0);
+    let gain = interior_fraction(&lowest, 120.0, 6.0) - interior_fraction(&once, 120.0, 6.0);
+    assert!((0.01..0.03).contains(&gain), "{gain}");
+}
+
+#[test]
+fn the_placed_grains_keep_the_sieve_curve() {
+    for mass in [Mass::Disc, Mass::Sphere] {
+        let curve = graded(mass);
+        let dropped = pack(&Sizes::Sieve(curve.clone()), 1000, 50.0, SEED);
+        let realised = sieve_curve(&dropped.grains, &curve.diameter, mass);
+        for (wanted, realised) in curve.passing.iter().zip(realised) {
+            assert!((wanted - realised).abs() < 5.0 / 1000.0);
+        }
+    }
+}
+
+#[test]
+fn a_full_box_holds_no_grain_more_and_keeps_the_sieve_curve() {
+    let curve = graded(Mass::Disc);
+    let sizes = Sizes::Sieve(curve.clone());
+    let dropped = fill(40.0, 30.0, &sizes, 1, SEED).unwrap();
+    let count = dropped.grains.len();
+    let top = |d: &Dropped| {
+        d.grains
+            .values()
+            .iter()
+            .fold(0.0_f64, |a, g| a.max(g.centre.y + g.radius))
+    };
+    assert!(top(&dropped) <= 30.0);
+    assert!(top(&pack(&sizes, count + 1, 40.0, SEED)) > 30.0);
+    let realised = sieve_curve(&dropped.grains, &curve.diameter, Mass::Disc);
+    for (wanted, realised) in curve.passing.iter().zip(realised) {
+        assert!((wanted - realised).abs() < 5.0 / count as f64);
+    }
+}
+
+#[test]
+fn the_seed_alone_decides() {
+    let sizes = uniform(0.5, 1.5);
+    assert_eq!(pack(&sizes, 500, 30.0, 3), pack(&sizes, 500, 30.0, 3));
+    assert_ne!(pack(&sizes, 500, 30.0, 3), pack(&sizes, 500, 30.0, 4));
+}
+
+#[test]
+fn the_bits_are_the_same_on_every_platform() {
+    let hash = |sizes: &Sizes| {
+        let dropped = pack(sizes, 1000, 40.0, SEED);
+        // FNV-1a over the bits of x, y and radius, little-endian.
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        for grain in dropped.grains.values() {
+            for value in [grain.centre.x, grain.centre.y, grain.radius] {
+                for byte in value.to_le_bytes() {
+                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+                }
+            }
+        }
+        hash
+    };
+    assert_eq!(hash(&uniform(0.5, 1.5)), 4_210_848_049_899_609_003);
+    assert_eq!(
+        hash(&Sizes::Sieve(graded(Mass::Sphere))),
+        17_567_642_043_159_423_951
+    );
+}
+
+#[test]
+fn what_cannot_be_dropped_says_why() {
+    let says = |result: Result<Dropped, PackingError>| result.unwrap_err().to_string();
+    assert_eq!(
+        says(drop(3.0, &[1.0, 2.0], 1, None, SEED)),
+        "a grain of diameter 4 does not fit into a box of width 3"
+    );
+    assert_eq!(
+        says(drop(9.0, &[2.0], 1, Some(3.0), SEED)),
+        "a grain of diameter 4 does not fit into a box of height 3"
+    );
+    assert_eq!(
+        says(drop(9.0, &[1.0, f64::NAN], 1, None, SEED)),
+        "radius NaN is not a positive number"
+    );
+    assert_eq!(says(drop(9.0, &[], 1, None, SEED)), "no grains to place");
+    assert_eq!(
+        says(drop(9.0, &[1.0], 0, None, SEED)),
+        "a grain needs at least one try"
+    );
+    assert_eq!(
+        says(fill(9.0, 3.0, &uniform(1.0, 2.0), 1, SEED)),
+        "a grain of diameter 3.5 does not fit into a box of height 3"
+    );
+}
+
+#[test]
+fn ids_count_the_grains_in_the_order_of_dropping() {
+    let radii = uniform(0.5, 1.5).radii(50, SEED).unwrap();
+    let dropped = drop(20.0, &radii, 1, None, SEED).unwrap();
+    for (id, grain) in dropped.grains.iter() {
+        assert_eq!(grain.radius, radii[id.index()]);
+    }
+}
