@@ -79,7 +79,7 @@ impl Cohesionless {
     ) -> Option<PhaseChange> {
         let change = |to, violation| (violation > 0.0).then_some(PhaseChange { to, violation });
         if phase == Phase::Open {
-            return change(Phase::Closed, -k.normal * v.normal);
+            return change(self.closing_phase(v, k, memory), -k.normal * v.normal);
         }
         if force.normal > 0.0 {
             return change(Phase::Open, force.normal);
@@ -98,6 +98,21 @@ impl Cohesionless {
                 let slipped = self.slip(v, force, k, memory, phase) - self.slip_before(memory, k);
                 change(Phase::Closed, -sense * slipped * k.shear_at(v.normal))
             }
+        }
+    }
+
+    /// The phase in which an open contact closes at `v`: it slides where the shear spring would exceed the limit.
+    fn closing_phase(
+        &self,
+        v: RelativeDisplacement,
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Phase {
+        let shear = shear::respond(self.reading, v, k, memory).force;
+        match self.friction {
+            Some(friction) if shear > -friction * k.normal * v.normal => Phase::SlidingForward,
+            Some(friction) if -shear > -friction * k.normal * v.normal => Phase::SlidingBackward,
+            _ => Phase::Closed,
         }
     }
 

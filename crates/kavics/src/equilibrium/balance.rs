@@ -7,7 +7,7 @@ use super::pieces::Pieces;
 use super::sparsity::{Numbers, Sparsity, Stored};
 use super::{Displacement, Freedom, Iterate, Iteration, Load, Settings, SolveError, State};
 use crate::assembly::{Assembly, Partner};
-use crate::contact_law::{ContactForce, Matrix, Property, RelativeDisplacement};
+use crate::contact_law::{ContactForce, Law, Matrix, Property, RelativeDisplacement};
 use crate::ids::{BodyId, ContactId, GrainId, Id, PerBody, PerContact, PerProperty};
 
 /// What acts on the assembly.
@@ -379,9 +379,13 @@ impl<'a> System<'a> {
         let mut history = History::default();
         if moves {
             let unbalanced = self.predict(configuration, action);
-            let step = self.solve(configuration, &unbalanced, Iteration::Secant, 0.0, progress)?;
-            self.advance(configuration, &step);
+            if let Ok(step) =
+                self.solve(configuration, &unbalanced, Iteration::Secant, 0.0, progress)
+            {
+                self.advance(configuration, &step);
+            }
         }
+        let start = configuration.displacements.clone();
         loop {
             self.respond(configuration);
             let imbalance = self.imbalance(configuration, &action.loads);
@@ -394,16 +398,23 @@ impl<'a> System<'a> {
                 return Ok(Settled::Balanced);
             }
             let falls = history.push(imbalance.largest);
-            if history.len() > MOST_ITERATIONS || !imbalance.largest.is_finite() {
-                return Err(not_converged(progress, &imbalance));
-            }
-            if progress.held_pivots > 0 && history.len() > 1 && falls > SLOW {
-                return self.drift(configuration, &imbalance, progress);
-            }
-            if falls > SLOW && history.len() > 3 {
-                if iteration == Iteration::Tangent && history.is_hopeless() {
+            let hopeless = history.len() > MOST_ITERATIONS
+                || !imbalance.largest.is_finite()
+                || iteration == Iteration::Tangent && history.is_hopeless();
+            let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > SLOW;
+            if hopeless || floppy {
+                if hopeless && !self.has_phases(configuration) {
                     return Err(not_converged(progress, &imbalance));
                 }
+                configuration.displacements = start;
+                return self.drift(
+                    configuration,
+                    action,
+                    if floppy { Iteration::Secant } else { iteration },
+                    progress,
+                );
+            }
+            if falls > SLOW && history.len() > 3 {
                 iteration = Iteration::Tangent;
             }
             if falls > LAG {
@@ -462,22 +473,32 @@ impl<'a> System<'a> {
     fn drift(
         &mut self,
         configuration: &mut Configuration,
-        imbalance: &Imbalance,
+        action: &Action,
+        iteration: Iteration,
         progress: &mut Progress,
     ) -> Result<Settled, Failure> {
-        let step = self.solve(
-            configuration,
-            &imbalance.unbalanced,
-            Iteration::Secant,
-            PROXIMAL,
-            progress,
-        )?;
-        if !configuration
-            .bonds
-            .values()
-            .iter()
-            .any(|bond| bond.law(self.properties).is_some_and(|l| l.has_phases()))
-        {
+        self.respond(configuration);
+        let imbalance = self.imbalance(configuration, &action.loads);
+        // A tangent may be singular even so; the secant is not.
+        let step = self
+            .solve(
+                configuration,
+                &imbalance.unbalanced,
+                iteration,
+                PROXIMAL,
+                progress,
+            )
+            .or_else(|_| {
+                self.solve(
+                    configuration,
+                    &imbalance.unbalanced,
+                    Iteration::Secant,
+                    PROXIMAL,
+                    progress,
+                )
+            })
+            .map_err(|_| not_converged(progress, &imbalance))?;
+        if !self.has_phases(configuration) {
             return Err(Failure::Mechanism {
                 grains: self.moving(&step),
             });
@@ -485,6 +506,14 @@ impl<'a> System<'a> {
         self.advance(configuration, &step);
         self.respond(configuration);
         Ok(Settled::Drifting)
+    }
+
+    fn has_phases(&self, configuration: &Configuration) -> bool {
+        configuration
+            .bonds
+            .values()
+            .iter()
+            .any(|bond| bond.law(self.properties).is_some_and(Law::has_phases))
     }
 
     /// The grains that a step moves most, at most ten.
@@ -531,7 +560,7 @@ impl<'a> System<'a> {
         iteration: Iteration,
         proximal: f64,
         progress: &mut Progress,
-    ) -> Result<Vec<f64>, Failure> {
+    ) -> Result<Vec<f64>, Singular> {
         let mut right = vec![0.0; self.unknowns()];
         for body in unbalanced.ids() {
             let load = self.free_part(body, unbalanced[body]).components();
@@ -553,11 +582,7 @@ impl<'a> System<'a> {
         };
         match solved {
             Ok(()) if right.iter().all(|value| value.is_finite()) => Ok(right),
-            _ => Err(Failure::NotConverged {
-                iterations: progress.iterations,
-                residual: f64::INFINITY,
-                at: BodyId(0),
-            }),
+            _ => Err(Singular),
         }
     }
 
