@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use kavics::assembly::{
     Between, ContactGraph, ContactPoint, DualLength, Grain, Partner, Shaping, Side, Site,
-    box_sides, contact_graph,
+    box_sides, contact_graph, envelope,
 };
 use kavics::geometry::{Container, Grid, HalfPlane, PowerDiagram, Vector, power_diagram};
 use kavics::ids::{GrainId, PerGrain, PerSide, PropertyId, SideId};
@@ -278,6 +278,47 @@ proptest! {
         let sum: f64 = pack.diagram().cell_area.iter().sum();
         prop_assert!((sum - 6.0).abs() < 1e-9, "{}", sum);
         pack.graph(Between::Neighbours);
+    }
+
+    #[test]
+    fn the_envelope_is_the_first_grain_met(
+        random in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 1..60),
+        side in 0_u32..4,
+    ) {
+        let pack = sequential(&random, 9.0, 6.0);
+        let (grains, sides) = (pack.grains(), pack.sides());
+        let side = &sides[SideId(side)];
+        let parts = envelope(&grains, side);
+        let direction = (side.end - side.start) * (1.0 / side.length());
+        for k in 0..500 {
+            let at = (f64::from(k) + 0.5) / 500.0 * side.length();
+            let depth = |g: &Grain| {
+                let u = (g.centre - side.start).dot(direction) - at;
+                let squared = g.radius * g.radius - u * u;
+                (squared > 0.0).then(|| side.distance(g.centre) - squared.sqrt())
+            };
+            let met = grains.iter().filter_map(|(id, g)| Some((depth(g)?, id)));
+            let first = met.min_by(|a, b| a.0.total_cmp(&b.0)).map(|m| m.1);
+            let part = parts.iter().find(|p| p.from < at && at < p.to);
+            prop_assert_eq!(first, part.map(|p| p.grain));
+        }
+    }
+
+    #[test]
+    fn nearly_square_lattices_have_one_diagonal_a_square(
+        random in random_discs(13 * 11),
+        digits in 9_i32..18,
+    ) {
+        let mut pack = square(13, 11);
+        for (k, &(u, v, w)) in random.iter().enumerate() {
+            let shift = Vector::new(u, v) * 10.0_f64.powi(-digits);
+            pack.centres[k] = pack.centres[k] + shift;
+            pack.radii[k] -= w * 10.0_f64.powi(-digits);
+        }
+        check_all(&pack);
+        let diagram = pack.diagram();
+        prop_assert_eq!(diagram.triangles.len(), 2 * 12 * 10);
+        prop_assert_eq!(13 * 11 + diagram.triangles.len(), diagram.edges.len() + 1);
     }
 
     #[test]
