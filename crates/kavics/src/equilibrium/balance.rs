@@ -407,12 +407,8 @@ impl<'a> System<'a> {
                     return Err(not_converged(progress, &imbalance));
                 }
                 configuration.displacements = start;
-                return self.drift(
-                    configuration,
-                    action,
-                    if floppy { Iteration::Secant } else { iteration },
-                    progress,
-                );
+                let iteration = if floppy { Iteration::Secant } else { iteration };
+                return self.drift(configuration, action, iteration, progress);
             }
             if falls > SLOW && history.len() > 3 {
                 iteration = Iteration::Tangent;
@@ -420,14 +416,22 @@ impl<'a> System<'a> {
             if falls > LAG {
                 self.factored = None;
             }
-            let step = self.solve(
+            match self.solve(
                 configuration,
                 &imbalance.unbalanced,
                 iteration,
                 0.0,
                 progress,
-            )?;
-            self.advance(configuration, &step);
+            ) {
+                Ok(step) => self.advance(configuration, &step),
+                Err(_) if !self.has_phases(configuration) => {
+                    return Err(not_converged(progress, &imbalance));
+                }
+                Err(_) => {
+                    configuration.displacements = start;
+                    return self.drift(configuration, action, iteration, progress);
+                }
+            }
         }
     }
 
