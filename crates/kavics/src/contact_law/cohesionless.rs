@@ -33,7 +33,7 @@ impl Cohesionless {
         let thrust_by_shear = if shear.thrust == 0.0 {
             0.0
         } else {
-            shear.by_normal
+            shear.coupling
         };
         let secant = [[k.normal, 0.0, 0.0], [0.0, shear.secant, 0.0], [0.0; 3]];
         let Some((sense, friction)) = sense(phase).zip(self.friction) else {
@@ -45,7 +45,7 @@ impl Cohesionless {
                 },
                 tangent: [
                     [k.normal, thrust_by_shear, 0.0],
-                    [shear.by_normal, shear.by_shear, 0.0],
+                    [shear.coupling, shear.tangent, 0.0],
                     [0.0; 3],
                 ],
                 secant,
@@ -95,7 +95,7 @@ impl Cohesionless {
                 change(to, force.shear.abs() + friction * force.normal)
             }
             Some(sense) => {
-                let slipped = self.slip(v, force, k, memory, phase) - self.slip_before(memory, k);
+                let slipped = self.slip(v, force, k, memory, phase) - Self::slip_before(memory, k);
                 change(Phase::Closed, -sense * slipped * k.shear_at(v.normal))
             }
         }
@@ -117,7 +117,7 @@ impl Cohesionless {
     }
 
     /// The slip in which the remembered shear force is that of the shear spring.
-    fn slip_before(&self, memory: &ContactMemory, k: &Stiffness) -> f64 {
+    fn slip_before(memory: &ContactMemory, k: &Stiffness) -> f64 {
         if memory.phase == Phase::Open {
             return memory.slip;
         }

@@ -7,7 +7,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-use super::balance::{Action, Configuration, Failure, Progress, Settled, System};
+use super::balance::Settled;
+use super::configuration::{Action, Configuration, Failure, Progress};
+use super::system::System;
 use crate::contact_law::{Phase, PhaseChange};
 use crate::ids::{ContactId, GrainId, Id};
 
