@@ -1,5 +1,7 @@
 //! The table that ends a run, 80 columns wide.
 
+use std::fmt::Write;
+
 use kavics::measure::{StressPartition, Tensor};
 use kavics_report::Comparison;
 use kavics_results::StepRow;
@@ -167,18 +169,19 @@ pub fn compared(comparison: &Comparison) -> String {
         comparison.matched_by, "column", "run", "compared", "difference", comparison.matched_by
     );
     for note in &comparison.notes {
-        text.push_str(&format!("# {note}\n"));
+        let _ = writeln!(text, "# {note}");
     }
     for column in &comparison.columns {
         if let Some(value) = column.largest() {
-            text.push_str(&format!(
-                "{:<22}{:>14.6}{:>14.6}{:>14.6}  {}\n",
+            let _ = writeln!(
+                text,
+                "{:<22}{:>14.6}{:>14.6}{:>14.6}  {}",
                 column.name,
                 value.run,
                 value.compared,
                 value.difference(),
                 value.label
-            ));
+            );
         }
     }
     text
