@@ -72,10 +72,13 @@ impl Failure {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
-            Self::Scene(SceneError::Unreadable { .. }) => 4,
             Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
             Self::NoEquilibrium { .. } => 3,
-            Self::Results(_) | Self::Report(_) | Self::Output(_) | Self::Threads(_) => 4,
+            Self::Scene(SceneError::Unreadable { .. })
+            | Self::Results(_)
+            | Self::Report(_)
+            | Self::Output(_)
+            | Self::Threads(_) => 4,
         })
     }
 }
