@@ -16,7 +16,7 @@ use crate::plot::round_step;
 const EXTENT: f64 = 10_000.0;
 
 /// Widths of lines.
-const WIDTHS: usize = 8;
+const WIDTHS: usize = 12;
 
 /// Above this many grains no circles are drawn.
 const GRAINS_DRAWN: usize = 20_000;

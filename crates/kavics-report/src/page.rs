@@ -19,6 +19,9 @@ const CONTACTS_DRAWN: usize = 900_000;
 /// Above this many grains a picture takes half of the page.
 const LARGE: usize = 200;
 
+/// Share of the run's largest stress below which a stress is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Events listed.
 const EVENTS_SHOWN: usize = 200;
 
@@ -245,10 +248,20 @@ fn parts(steps: &Columns) -> Result<Vec<PartsRow>, ReportError> {
             .each_ref()
             .map(|tensor| tensor.each_ref().map(|component| shown(component[row]))),
         isotropic: shown(isotropic[row]),
-        ratio: fixed(deviator(&tensors[0], row) / deviator(&tensors[1], row), 3),
+        ratio: fixed(ratio(&tensors, row, ROUNDING * largest), 3),
     };
     let rows = (0..steps.len()).filter(|row| isotropic[*row].is_finite());
     Ok(rows.map(row).collect())
+}
+
+/// The shear part over the normal variation part, where that is more than rounding.
+fn ratio(tensors: &[[Vec<f64>; 4]; 3], row: usize, rounding: f64) -> f64 {
+    let variation = deviator(&tensors[1], row);
+    if variation > rounding {
+        deviator(&tensors[0], row) / variation
+    } else {
+        f64::NAN
+    }
 }
 
 fn deviator([xx, xy, yx, yy]: &[Vec<f64>; 4], row: usize) -> f64 {

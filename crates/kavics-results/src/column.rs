@@ -104,7 +104,7 @@ impl<R> Column<R> {
     pub(crate) fn show(&self, row: &R) -> String {
         match &self.read {
             Read::Integer(read) => read(row).map(|value| value.to_string()),
-            Read::Number(read) => read(row).map(|value| value.to_string()),
+            Read::Number(read) => read(row).map(|value| format!("{value:?}")),
             Read::Text(read) => read(row).map(str::to_owned),
         }
         .unwrap_or_default()

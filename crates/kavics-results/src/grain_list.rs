@@ -40,7 +40,7 @@ pub fn write_grains(path: &Path, grains: &[Grain]) -> Result<(), ResultsError> {
 pub fn grains_csv(grains: &[Grain]) -> String {
     let mut text = String::from("x,y,radius\n");
     for Grain { centre, radius } in grains {
-        let _ = writeln!(text, "{},{},{radius}", centre.x, centre.y);
+        let _ = writeln!(text, "{:?},{:?},{radius:?}", centre.x, centre.y);
     }
     text
 }
