@@ -16,13 +16,16 @@ use crate::plot::round_step;
 const EXTENT: f64 = 10_000.0;
 
 /// Widths of lines.
-const WIDTHS: usize = 8;
+const WIDTHS: usize = 12;
 
 /// Above this many grains no circles are drawn.
 const GRAINS_DRAWN: usize = 20_000;
 
 /// Forces below this share of the largest one are drawn as none.
 const NO_FORCE: f64 = 1e-6;
+
+/// Half the width of the smallest cross that is still seen.
+const SMALLEST_MARK: i32 = 45;
 
 /// A point of the picture, downwards, whole units.
 type Point = [i32; 2];
@@ -282,7 +285,7 @@ fn draw_contacts(svg: &mut String, grains: &Discs, lines: &Lines, marked: &Marke
     let mut gone = Path::default();
     let mut crosses = Path::default();
     let typical = typical_length(lines);
-    let arm = marked.map.length(0.11 * typical).max(20);
+    let arm = marked.map.length(0.11 * typical).max(SMALLEST_MARK);
     for row in 0..lines.force.len() {
         let Some([from, to]) = lines.ends(row, grains) else {
             continue;
@@ -310,14 +313,14 @@ fn draw_contacts(svg: &mut String, grains: &Discs, lines: &Lines, marked: &Marke
             crosses.line([x - arm, y + arm], [x + arm, y - arm]);
         }
     }
-    let widest = 0.28 * typical * marked.map.scale;
+    let widest = 0.2 * typical * marked.map.scale;
     idle.write(svg, "idle", &stroke(0.03 * typical * marked.map.scale));
     for (bin, (pressed, pulled)) in pressed.iter().zip(&pulled).enumerate() {
         let width = stroke(widest * (bin as f64 + 0.6) / WIDTHS as f64);
         pressed.write(svg, "press", &width);
         pulled.write(svg, "pull", &width);
     }
-    let thin = 0.045 * typical * marked.map.scale;
+    let thin = (0.045 * typical * marked.map.scale).max(0.3 * f64::from(SMALLEST_MARK));
     let dash = format!(
         " stroke-dasharray=\"{:.0} {:.0}\"{}",
         3.0 * thin,

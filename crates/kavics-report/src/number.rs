@@ -13,7 +13,7 @@ pub(crate) fn show(value: f64) -> String {
     } else if (1e-3..1e6).contains(&size) {
         plain(value, 5)
     } else {
-        format!("{value:.3e}")
+        scientific(value, 3)
     };
     text.replace('-', &MINUS.to_string())
 }
@@ -31,6 +31,14 @@ fn plain(value: f64, digits: i32) -> String {
     }
 }
 
+/// `value` as mantissa and power of ten, without zeros at the end of the mantissa.
+fn scientific(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+    format!("{mantissa}e{exponent}")
+}
+
 /// A fixed number of decimals, as in a printed table; what rounds to zero has no sign.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -46,11 +54,8 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 /// A tick of an axis whose ticks are `step` apart.
 pub(crate) fn tick(value: f64, step: f64) -> String {
     let largest = value.abs();
-    if largest != 0.0 && !(1e-4..1e6).contains(&largest.max(step)) {
-        let digits = format!("{value:.2e}");
-        let (mantissa, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));
-        let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-        return format!("{mantissa}e{exponent}").replace('-', &MINUS.to_string());
+    if largest != 0.0 && !(1e-3..1e6).contains(&largest.max(step)) {
+        return scientific(value, 2).replace('-', &MINUS.to_string());
     }
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     fixed(value, decimals)
@@ -65,7 +70,7 @@ mod tests {
         assert_eq!(show(0.0), "0");
         assert_eq!(show(-30.07), "−30.07");
         assert_eq!(show(123_456.7), "123457");
-        assert_eq!(show(3.1e-12), "3.100e−12");
+        assert_eq!(show(3.1e-12), "3.1e−12");
         assert_eq!(show(f64::NAN), "–");
     }
 

@@ -16,6 +16,12 @@ use crate::{Comparison, ReportError};
 const PICTURES: usize = 6;
 const CONTACTS_DRAWN: usize = 900_000;
 
+/// Above this many grains a picture takes half of the page.
+const LARGE: usize = 200;
+
+/// Share of the run's largest stress below which a stress is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Events listed.
 const EVENTS_SHOWN: usize = 200;
 
@@ -26,6 +32,7 @@ struct Page {
     state: &'static str,
     tiles: Vec<Tile>,
     pictures: Vec<Picture>,
+    large: bool,
     largest: String,
     groups: Vec<Group>,
     parts: Vec<PartsRow>,
@@ -92,6 +99,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         state: record.state.name(),
         tiles: tiles(&record, &steps)?,
         pictures,
+        large: record.grains > LARGE,
         largest: show(largest),
         groups: groups(folder, &steps)?,
         parts: parts(&steps)?,
@@ -118,7 +126,7 @@ fn tiles(record: &RunRecord, steps: &Columns) -> Result<Vec<Tile>, ReportError> 
     Ok(vec![
         tile("grains", record.grains.to_string()),
         tile("contacts", record.contacts.to_string()),
-        tile("grains in the window", record.window_grains.to_string()),
+        tile("in the window", record.window_grains.to_string()),
         tile("load steps", steps.len().to_string()),
         tile("last load factor", last("load_factor")?),
         tile("bonds broken", last("broken")?),
@@ -240,10 +248,20 @@ fn parts(steps: &Columns) -> Result<Vec<PartsRow>, ReportError> {
             .each_ref()
             .map(|tensor| tensor.each_ref().map(|component| shown(component[row]))),
         isotropic: shown(isotropic[row]),
-        ratio: fixed(deviator(&tensors[0], row) / deviator(&tensors[1], row), 3),
+        ratio: fixed(ratio(&tensors, row, ROUNDING * largest), 3),
     };
     let rows = (0..steps.len()).filter(|row| isotropic[*row].is_finite());
     Ok(rows.map(row).collect())
+}
+
+/// The shear part over the normal variation part, where that is more than rounding.
+fn ratio(tensors: &[[Vec<f64>; 4]; 3], row: usize, rounding: f64) -> f64 {
+    let variation = deviator(&tensors[1], row);
+    if variation > rounding {
+        deviator(&tensors[0], row) / variation
+    } else {
+        f64::NAN
+    }
 }
 
 fn deviator([xx, xy, yx, yy]: &[Vec<f64>; 4], row: usize) -> f64 {
@@ -251,7 +269,7 @@ fn deviator([xx, xy, yx, yy]: &[Vec<f64>; 4], row: usize) -> f64 {
 }
 
 /// Columns of `steps` that the report lists; all of them stand in the table itself.
-const STEP_COLUMNS: [&str; 15] = [
+const STEP_COLUMNS: [&str; 12] = [
     "load_factor",
     "iterations",
     "residual",
@@ -261,11 +279,8 @@ const STEP_COLUMNS: [&str; 15] = [
     "broken_in_step",
     "rattlers",
     "coordination_number",
-    "void_ratio",
     "graph_porosity",
     "stress_xx",
-    "stress_xy",
-    "stress_yx",
     "stress_yy",
 ];
 

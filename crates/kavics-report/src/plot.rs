@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use crate::number::{show, tick};
 
-const WIDTH: f64 = 460.0;
-const HEIGHT: f64 = 280.0;
-const LEFT: f64 = 62.0;
+const WIDTH: f64 = 400.0;
+const HEIGHT: f64 = 260.0;
+const LEFT: f64 = 66.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
@@ -124,8 +124,10 @@ pub(crate) fn draw(plot: &Plot<'_>) -> String {
         escape(plot.x_label)
     );
     draw_axes(&mut svg, &frame, plot);
-    for series in plot.series {
-        draw_series(&mut svg, &frame, series);
+    for (order, series) in plot.series.iter().enumerate() {
+        // Lines on top are thinner, so that those under them still show.
+        let width = (3.0 - 0.45 * order as f64).max(1.2);
+        draw_series(&mut svg, &frame, series, width);
     }
     svg.push_str("</svg>");
     svg
@@ -160,7 +162,7 @@ fn draw_axes(svg: &mut String, frame: &Frame, plot: &Plot<'_>) {
         svg,
         "<path class=\"mark\" d=\"M{LEFT} {bottom}H{right}\"/>\
          <text class=\"label\" text-anchor=\"middle\" x=\"{middle}\" y=\"{}\">{}</text>\
-         <text class=\"label\" text-anchor=\"middle\" transform=\"translate(13 {}) rotate(-90)\">{}</text>",
+         <text class=\"label\" text-anchor=\"middle\" transform=\"translate(12 {}) rotate(-90)\">{}</text>",
         HEIGHT - 8.0,
         escape(plot.x_label),
         f64::midpoint(TOP, bottom),
@@ -168,7 +170,7 @@ fn draw_axes(svg: &mut String, frame: &Frame, plot: &Plot<'_>) {
     );
 }
 
-fn draw_series(svg: &mut String, frame: &Frame, series: &Series) {
+fn draw_series(svg: &mut String, frame: &Frame, series: &Series, width: f64) {
     let mut path = String::new();
     let mut pen = 'M';
     for &(x, y) in &series.points {
@@ -181,7 +183,10 @@ fn draw_series(svg: &mut String, frame: &Frame, series: &Series) {
     }
     let dash = if series.dashed { " dash" } else { "" };
     let colour = series.colour;
-    let _ = write!(svg, "<path class=\"line c{colour}{dash}\" d=\"{path}\"/>");
+    let _ = write!(
+        svg,
+        "<path class=\"line c{colour}{dash}\" stroke-width=\"{width:.2}\" d=\"{path}\"/>"
+    );
     if series.points.len() > MARKED {
         return;
     }

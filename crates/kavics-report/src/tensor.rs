@@ -22,7 +22,9 @@ impl Principal {
         let half = 0.5 * (xx - yy);
         let radius = half.hypot(xy);
         let isotropic = radius <= ISOTROPIC * mean.abs();
-        let angle = 0.5 * xy.atan2(half).to_degrees();
+        let turned = 0.5 * xy.atan2(half).to_degrees();
+        // −90 and 90 are the same direction; rounding must not make a curve jump between them.
+        let angle = if turned < -90.0 + 1e-6 { 90.0 } else { turned };
         Self {
             larger: mean + radius,
             smaller: mean - radius,

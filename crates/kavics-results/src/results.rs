@@ -298,7 +298,7 @@ impl<'a> Results<'a> {
         }
     }
 
-    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow> {
+    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow<'a>> {
         let contacts = self.scene.assembly.contacts.iter();
         let properties = &self.scene.properties;
         let step = equilibrium.step;
