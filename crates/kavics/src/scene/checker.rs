@@ -20,15 +20,19 @@ pub enum Bound {
 /// What has been found wrong, or worth a warning, so far.
 #[derive(Debug, Default)]
 pub struct Checker {
+    /// Mistakes.
     pub problems: Problems,
+    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
 impl Checker {
+    /// Adds a mistake.
     pub fn push(&mut self, problem: Problem) {
         self.problems.push(problem);
     }
 
+    /// Adds a warning.
     pub fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());
     }
