@@ -126,9 +126,9 @@ static SEEDS: LazyLock<Vec<String>> = LazyLock::new(|| {
 });
 
 /// Numbers that scenes rarely have.
-const NUMBERS: [&str; 16] = [
+const NUMBERS: [&str; 20] = [
     "0", "1", "2", "-1", "0.5", "1.5", "7", "1e-300", "1e300", "-1e300", "1e-9", "1e9", "\"1 mm\"",
-    "31", "32", "1e16",
+    "31", "32", "1e16", "1e30", "1e-30", "1e25", "1e-25",
 ];
 
 /// A scene in which a few numbers are others.
