@@ -13,9 +13,17 @@ pub(crate) fn show(value: f64) -> String {
     } else if (1e-3..1e6).contains(&size) {
         plain(value, 5)
     } else {
-        scientific(value, 3)
+        scientific(value, 4)
     };
     text.replace('-', &MINUS.to_string())
+}
+
+/// Three significant digits, for a place of its own.
+pub(crate) fn brief(value: f64) -> String {
+    if value != 0.0 && value.is_finite() && !(1e-3..1e6).contains(&value.abs()) {
+        return scientific(value, 2).replace('-', &MINUS.to_string());
+    }
+    show(value)
 }
 
 /// `value` with `digits` significant digits, without zeros at the end.

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::curves::{Group, groups};
 use crate::graph;
-use crate::number::{fixed, show};
+use crate::number::{brief, fixed, show};
 use crate::{Comparison, ReportError};
 
 /// Pictures of the contact graph, at most; and contacts in all of them together, so that the page stays small.
@@ -118,7 +118,7 @@ fn tiles(record: &RunRecord, steps: &Columns) -> Result<Vec<Tile>, ReportError> 
         let values = steps.numbers(column)?;
         Ok(values
             .last()
-            .map_or_else(|| "–".to_owned(), |value| show(*value)))
+            .map_or_else(|| "–".to_owned(), |value| brief(*value)))
     };
     let residuals = steps.numbers("residual")?;
     let residual = residuals.into_iter().fold(0.0, f64::max);
@@ -130,7 +130,7 @@ fn tiles(record: &RunRecord, steps: &Columns) -> Result<Vec<Tile>, ReportError> 
         tile("load steps", steps.len().to_string()),
         tile("last load factor", last("load_factor")?),
         tile("bonds broken", last("broken")?),
-        tile("largest residual", show(residual)),
+        tile("largest residual", brief(residual)),
         tile("ledger error", last("ledger_error")?),
     ])
 }
