@@ -37,6 +37,7 @@ struct Page {
     groups: Vec<Group>,
     parts: Vec<PartsRow>,
     steps: Table,
+    sides: Table,
     events: Table,
     comparison: Option<Comparison>,
     compared: Vec<ComparedRow>,
@@ -104,6 +105,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         groups: groups(folder, &steps)?,
         parts: parts(&steps)?,
         steps: steps_table(&steps)?,
+        sides: sides_table(folder)?,
         events: events_table(&events)?,
         compared: comparison.as_ref().map(compared_rows).unwrap_or_default(),
         comparison,
@@ -300,6 +302,29 @@ fn steps_table(steps: &Columns) -> Result<Table, ReportError> {
     Ok(Table {
         names: ["step", "stage"].into_iter().chain(STEP_COLUMNS).collect(),
         rows: (0..steps.len()).map(row).collect(),
+        left_out: 0,
+    })
+}
+
+/// The sides at the last recorded load step.
+fn sides_table(folder: &ResultsFolder) -> Result<Table, ReportError> {
+    let Some(last) = folder.recorded_steps()?.pop() else {
+        return Ok(Table::default());
+    };
+    let sides = folder.sides(last)?;
+    let names = sides.texts("name")?;
+    let numbers = ["step", "ux", "uy", "rotation", "fx", "fy", "moment"];
+    let columns: Result<Vec<_>, _> = numbers.iter().map(|name| sides.numbers(name)).collect();
+    let columns = columns?;
+    let row = |row: usize| {
+        let values = columns.iter().map(|column| show(column[row]));
+        std::iter::once(names[row].to_owned())
+            .chain(values)
+            .collect()
+    };
+    Ok(Table {
+        names: ["side"].into_iter().chain(numbers).collect(),
+        rows: (0..sides.len()).map(row).collect(),
         left_out: 0,
     })
 }
