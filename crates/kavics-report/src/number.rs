@@ -65,6 +65,9 @@ pub(crate) fn tick(value: f64, step: f64) -> String {
     if largest != 0.0 && !(1e-3..1e6).contains(&largest.max(step)) {
         return scientific(value, 2).replace('-', &MINUS.to_string());
     }
+    if value == 0.0 && step < 1e-3 {
+        return "0".to_owned();
+    }
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     fixed(value, decimals)
 }
@@ -86,5 +89,6 @@ mod tests {
     fn nothing_is_minus_zero() {
         assert_eq!(fixed(-1e-9, 3), "0.000");
         assert_eq!(tick(-0.0, 0.5), "0.0");
+        assert_eq!(tick(0.0, 1e-14), "0");
     }
 }

@@ -12,7 +12,7 @@ const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
 /// Above this many points a series is a line alone.
-const MARKED: usize = 60;
+const MARKED: usize = 25;
 
 /// One line of a plot.
 #[derive(Clone, Debug)]
