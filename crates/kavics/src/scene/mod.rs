@@ -2,12 +2,33 @@
 //!
 //! In: a TOML file. Out: a [`Scene`], or errors that name file, line, value and what was expected.
 
+mod build;
+mod build_contacts;
+mod build_grains;
+mod build_loading;
+mod check_contacts;
+mod check_grains;
+mod check_loading;
+mod check_property;
+mod check_run;
+mod check_stages;
+mod checker;
+mod choose;
+mod diagnostic;
+mod edge_load;
+mod file;
+mod grain_list;
+mod rigid_motion;
+mod scatter;
+mod unit;
+mod value;
+
 use std::path::{Path, PathBuf};
 
-use crate::assembly::Assembly;
+use crate::assembly::{Assembly, Grain};
 use crate::contact_law::Property;
 use crate::equilibrium::Settings;
-use crate::ids::{GrainId, PerProperty};
+use crate::ids::{GrainId, PerGrain, PerProperty};
 use crate::loading::{Breakage, LoadPath, Program};
 
 /// A scene, every name resolved, every number checked, grains placed.
@@ -49,8 +70,14 @@ impl Scene {
     ///
     /// # Errors
     /// All that is wrong with it, each with its place in the file.
-    pub fn read(_path: &Path, _grain_lists: &ReadGrains<'_>) -> Result<Self, SceneError> {
-        unimplemented!()
+    pub fn read(path: &Path, grain_lists: &ReadGrains<'_>) -> Result<Self, SceneError> {
+        let text = read_text(path)?;
+        Self::parse(
+            &text,
+            &path.display().to_string(),
+            folder(path),
+            grain_lists,
+        )
     }
 
     /// Builds a scene from the text of a scene file; `name` stands in messages, file names in it are relative
@@ -59,12 +86,30 @@ impl Scene {
     /// # Errors
     /// All that is wrong with it, each with its place in the text.
     pub fn parse(
-        _text: &str,
-        _name: &str,
-        _folder: &Path,
-        _grain_lists: &ReadGrains<'_>,
+        text: &str,
+        name: &str,
+        folder: &Path,
+        grain_lists: &ReadGrains<'_>,
     ) -> Result<Self, SceneError> {
-        unimplemented!()
+        let file = parse_file(text, name)?;
+        build::scene(&file, text, folder, grain_lists)
+            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
+    }
+
+    /// Only places the grains of a scene; contacts, loads and supports may be missing.
+    ///
+    /// # Errors
+    /// What is wrong with box and grains, as [`Scene::parse`] has it.
+    pub fn place_grains(
+        text: &str,
+        name: &str,
+        folder: &Path,
+        grain_lists: &ReadGrains<'_>,
+    ) -> Result<PerGrain<Grain>, SceneError> {
+        let file = parse_file(text, name)?;
+        build::grains(&file, folder, grain_lists)
+            .map(|placed| placed.grains)
+            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
     }
 
     /// The equilibria of this scene, one load step after the other.
@@ -77,6 +122,32 @@ impl Scene {
             self.settings,
         )
     }
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+fn parse_file(text: &str, name: &str) -> Result<file::SceneFile, SceneError> {
+    toml::from_str(text).map_err(|error| {
+        let mut problems = diagnostic::Problems::default();
+        problems.push(diagnostic::from_toml(&error));
+        SceneError::Wrong(problems.render(text, name))
+    })
+}
+
+/// JSON Schema of the scene file.
+#[cfg(feature = "schema")]
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(file::SceneFile);
+    format!("{:#}", schema.as_value())
 }
 
 /// What is wrong with a scene file. Its text shows the lines, marked; one block a mistake.

@@ -1,0 +1,309 @@
+//! Contacts from sites: zones, strengths, properties, and the check of tension limits.
+
+use super::build_grains::PlacedGrains;
+use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
+use super::checker::Checker;
+use super::diagnostic::Problem;
+use crate::assembly::{self, Assembly, Contact, ContactGraph, Partner, Side, Site};
+use crate::contact_law::{Cemented, Law, StiffnessRule, StrengthKind};
+use crate::ids::{Id, PerContact, PerSide, PropertyId};
+use crate::packing::{Purpose, Stream, random::stream};
+
+/// The assembly: grains, sides, contacts and dual graph.
+pub fn assembly(
+    plan: &ContactsPlan,
+    placed: PlacedGrains,
+    thickness: f64,
+    seed: u64,
+    checker: &mut Checker,
+) -> Option<Assembly> {
+    let present = [0, 1, 2, 3].map(|i: usize| plan.sides[i].is_some());
+    let sides = assembly::box_sides(placed.width, placed.height, present);
+    let reach: PerSide<f64> = plan
+        .sides
+        .iter()
+        .map(|side| {
+            side.as_ref()
+                .map_or(0.0, |side| side.reach * placed.mean_radius)
+        })
+        .collect();
+    let tolerance = plan.touching_tolerance * placed.mean_radius;
+    let graph = assembly::contact_graph(&placed.grains, &sides, plan.between, &reach, tolerance);
+    sides_touch(plan, &graph, &placed, &sides, checker);
+    let properties = zoned(plan, &graph, seed, checker)?;
+    let contacts = contacts(plan, &graph, &placed, &properties, seed);
+    let assembly = Assembly {
+        grains: placed.grains,
+        sides,
+        contacts,
+        cell_area: graph.cell_area,
+        triangles: graph.triangles,
+        thickness,
+    };
+    tension_limits(plan, &assembly, checker);
+    Some(assembly)
+}
+
+/// A side whose reach ends short of every grain is a mistake, one without reach only worth a warning.
+fn sides_touch(
+    plan: &ContactsPlan,
+    graph: &ContactGraph,
+    placed: &PlacedGrains,
+    sides: &PerSide<Side>,
+    checker: &mut Checker,
+) {
+    for (id, side) in sides.iter() {
+        let Some(side_plan) = &plan.sides[id.index()] else {
+            continue;
+        };
+        if graph.sites.iter().any(|s| s.second == Partner::Side(id)) {
+            continue;
+        }
+        let gap = placed
+            .grains
+            .values()
+            .iter()
+            .map(|grain| side.distance(grain.centre) - grain.radius)
+            .fold(f64::INFINITY, f64::min);
+        let nearest = gap / placed.mean_radius;
+        match &side_plan.reach_span {
+            Some(span) if side_plan.reach > 0.0 => checker.push(
+                Problem::at(
+                    span,
+                    format!("the {} side reaches no grain", side.name),
+                    format!(
+                        "expected at least {nearest:.6}, the gap to the nearest grain in mean radii"
+                    ),
+                )
+                .and(&side_plan.span, "this side"),
+            ),
+            _ => checker.warn(format!(
+                "no grain touches the {} side; the nearest is {nearest:.6} mean radii away",
+                side.name
+            )),
+        }
+    }
+}
+
+/// The property of each site.
+fn zoned(
+    plan: &ContactsPlan,
+    graph: &ContactGraph,
+    seed: u64,
+    checker: &mut Checker,
+) -> Option<Vec<PropertyId>> {
+    let mut properties: Vec<Option<PropertyId>> = vec![None; graph.sites.len()];
+    if plan.zones.is_empty() && plan.properties.len() == 1 {
+        properties.fill(Some(PropertyId(0)));
+    }
+    let mut seeds = stream(seed, Purpose::Zones);
+    for zone in &plan.zones {
+        let draws = zone_stream(&mut seeds);
+        let chosen = chosen(zone, graph, draws);
+        if !chosen.contains(&true) {
+            checker.push(Problem::at(
+                &zone.span,
+                "this zone names no contact",
+                zone_expectation(graph),
+            ));
+        }
+        for (property, chosen) in properties.iter_mut().zip(chosen) {
+            if chosen {
+                *property = Some(zone.property);
+            }
+        }
+    }
+    for (property, site) in properties.iter_mut().zip(&graph.sites) {
+        if let Partner::Side(side) = site.second {
+            *property = plan.sides[side.index()].as_ref().map(|side| side.property);
+        }
+    }
+    let without = properties.iter().position(Option::is_none);
+    if let Some(first) = without {
+        without_property(plan, graph, first, &properties, checker);
+        return None;
+    }
+    properties.into_iter().collect()
+}
+
+/// A stream of its own for each zone, so that zones do not change each other's choice.
+fn zone_stream(seeds: &mut Stream) -> Stream {
+    const SEEDS: f64 = (1_u64 << 53) as f64;
+    stream((seeds.unit() * SEEDS) as u64, Purpose::Zones)
+}
+
+fn chosen(zone: &ZonePlan, graph: &ContactGraph, mut draws: Stream) -> Vec<bool> {
+    let between_grains = |site: &Site| matches!(site.second, Partner::Grain(_));
+    graph
+        .sites
+        .iter()
+        .map(|site| {
+            // One draw for each contact, chosen or not.
+            let draw = draws.unit();
+            between_grains(site)
+                && match zone.place {
+                    ZonePlace::Everywhere => true,
+                    ZonePlace::Strip(ranges) => ranges.contain(site.tangent_point),
+                    ZonePlace::Share(share) => draw < share,
+                }
+        })
+        .collect()
+}
+
+fn zone_expectation(graph: &ContactGraph) -> String {
+    let points = || {
+        let between = |site: &&Site| matches!(site.second, Partner::Grain(_));
+        graph
+            .sites
+            .iter()
+            .filter(between)
+            .map(|site| site.tangent_point)
+    };
+    let span = |value: fn(crate::geometry::Vector) -> f64| {
+        points()
+            .map(value)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            })
+    };
+    if points().next().is_none() {
+        return "there is no contact between grains".to_owned();
+    }
+    let ([left, right], [low, high]) = (span(|p| p.x), span(|p| p.y));
+    format!("contact points lie at x from {left:.6} to {right:.6}, y from {low:.6} to {high:.6}")
+}
+
+fn without_property(
+    plan: &ContactsPlan,
+    graph: &ContactGraph,
+    first: usize,
+    properties: &[Option<PropertyId>],
+    checker: &mut Checker,
+) {
+    let count = properties.iter().filter(|p| p.is_none()).count();
+    let site = &graph.sites[first];
+    let point = site.tangent_point;
+    let span = plan.zones.last().map_or(&plan.span, |zone| &zone.span);
+    let verb = if count == 1 {
+        "contact has"
+    } else {
+        "contacts have"
+    };
+    checker.push(
+        Problem::at(
+            span,
+            format!(
+                "{count} {verb} no property; the first is between {} at ({:.6}, {:.6})",
+                partners(site.first, site.second),
+                point.x,
+                point.y
+            ),
+            "expected a zone for every contact",
+        )
+        .help("a first `[[zone]]` with `contact` alone gives a property to all contacts"),
+    );
+}
+
+fn partners(first: Partner, second: Partner) -> String {
+    match (first, second) {
+        (Partner::Grain(first), Partner::Grain(second)) => format!("grains {first} and {second}"),
+        (Partner::Grain(grain), Partner::Side(side))
+        | (Partner::Side(side), Partner::Grain(grain)) => {
+            format!("grain {grain} and side {side}")
+        }
+        (Partner::Side(first), Partner::Side(second)) => format!("sides {first} and {second}"),
+    }
+}
+
+fn contacts(
+    plan: &ContactsPlan,
+    graph: &ContactGraph,
+    placed: &PlacedGrains,
+    properties: &[PropertyId],
+    seed: u64,
+) -> PerContact<Contact> {
+    let mut draws = stream(seed, Purpose::Strengths);
+    graph
+        .sites
+        .iter()
+        .zip(properties)
+        .map(|(site, id)| {
+            // One draw for each contact, so that strengths do not depend on zones.
+            let draw = draws.unit();
+            let property = &plan.properties[*id];
+            let factor = property.scatter.map_or(1.0, |scatter| scatter.factor(draw));
+            site.contact(property.shaping, &placed.grains, *id, factor)
+        })
+        .collect()
+}
+
+/// A bond must break before its shear modulus is lost: k_t0 − μ·(k_n/s)·v > 0 at the opening v = Q_lim/k_n.
+fn tension_limits(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checker) {
+    for (id, property) in plan.properties.iter() {
+        let Law::Cemented(law) = &property.property.law else {
+            continue;
+        };
+        if law.shear_hardening <= 0.0
+            || law.shear_floor.is_some()
+            || law.strength.tension.is_infinite()
+        {
+            continue;
+        }
+        let beyond = assembly
+            .contacts
+            .iter()
+            .filter(|(_, contact)| contact.property == id)
+            .find(|(_, contact)| shear_stiffness_at_break(law, contact, assembly.thickness) <= 0.0);
+        if let Some((contact_id, contact)) = beyond {
+            let span = property.tension_span.as_ref().unwrap_or(&property.span);
+            checker.push(
+                Problem::at(
+                    span,
+                    format!(
+                        "contact {contact_id} of property `{}`, between {}, loses its shear modulus before it breaks in tension",
+                        property.property.name,
+                        partners(contact.first, contact.second)
+                    ),
+                    format!(
+                        "expected less than {:.6}, at which its shear modulus is zero",
+                        largest_tension(law, contact, assembly.thickness)
+                    ),
+                )
+                .help("lower the limit of tension or `shear_hardening`, or give a `shear_floor`"),
+            );
+        }
+    }
+}
+
+/// k_n and k_t0 of a contact.
+fn stiffness(rule: StiffnessRule, contact: &Contact, thickness: f64) -> [f64; 2] {
+    let area = contact.dual_length() * thickness;
+    match rule {
+        StiffnessRule::Layer { normal, shear } => [normal * area, shear * area],
+        StiffnessRule::Modulus { normal, shear } => {
+            [normal, shear].map(|modulus| modulus * area / contact.branch_length)
+        }
+        StiffnessRule::Direct { normal, shear, .. } => [normal, shear],
+    }
+}
+
+/// What turns the limit of tension into a force.
+fn force_of_limit(law: &Cemented, contact: &Contact, thickness: f64) -> f64 {
+    contact.strength_factor
+        * match law.strength.kind {
+            StrengthKind::Stress => contact.dual_length() * thickness,
+            StrengthKind::Force => 1.0,
+        }
+}
+
+fn shear_stiffness_at_break(law: &Cemented, contact: &Contact, thickness: f64) -> f64 {
+    let [_, shear] = stiffness(law.stiffness, contact, thickness);
+    let limit = law.strength.tension * force_of_limit(law, contact, thickness);
+    shear - law.shear_hardening * limit / contact.dual_length()
+}
+
+/// The limit of tension at which the shear modulus is lost: k_t0·s/μ as a force.
+fn largest_tension(law: &Cemented, contact: &Contact, thickness: f64) -> f64 {
+    let [_, shear] = stiffness(law.stiffness, contact, thickness);
+    shear * contact.dual_length() / (law.shear_hardening * force_of_limit(law, contact, thickness))
+}

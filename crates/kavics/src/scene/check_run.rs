@@ -1,0 +1,215 @@
+//! Checks of how a scene is solved, measured and recorded.
+
+use std::path::{Path, PathBuf};
+
+use super::check_contacts::{Ranges, optional_range};
+use super::checker::{Bound, Checker};
+use super::diagnostic::Problem;
+use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
+use super::unit::Dimension;
+use super::value::{Placed, Quantity, ValueOr};
+use crate::equilibrium::{Iteration, Settings};
+use crate::loading::Breakage;
+
+/// How a scene is solved, measured and recorded.
+#[derive(Clone, Debug)]
+pub struct RunPlan {
+    /// How equilibria are found.
+    pub settings: Settings,
+    /// When contacts break.
+    pub breakage: Breakage,
+    /// What is measured.
+    pub window: WindowPlan,
+    /// Grains and contacts are recorded every so many load steps.
+    pub record_every: usize,
+    /// Table to set beside the run.
+    pub compare: Option<PathBuf>,
+}
+
+/// The window before the grains are known.
+#[derive(Clone, Debug)]
+pub enum WindowPlan {
+    /// Grains without support, prescribed motion, load and side contact.
+    Undisturbed,
+    /// All grains.
+    All,
+    /// Grains with their centre in ranges, with the place in the file.
+    Within(Ranges, std::ops::Range<usize>),
+    /// Grains by id.
+    Ids(Placed<Vec<Placed<i64>>>),
+}
+
+/// Equilibrium, measures, records and the table to compare with.
+pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<RunPlan> {
+    let equilibrium = file.equilibrium.clone().unwrap_or_default();
+    let measure = file.measure.clone().unwrap_or_default();
+    let solving = solving(&equilibrium, checker);
+    let window = window(&measure, checker);
+    let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
+        checker.word(word, "every", &[("step", false), ("iteration", true)])
+    });
+    let every = file
+        .record
+        .as_ref()
+        .and_then(|record| record.every.as_ref());
+    let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
+    let compare = match &file.compare {
+        None => Some(None),
+        Some(table) => existing(&table.file, folder, checker).map(Some),
+    };
+    let (settings, breakage) = solving?;
+    Some(RunPlan {
+        settings: Settings {
+            keep_iterates: keep_iterates?,
+            ..settings
+        },
+        breakage,
+        window: window?,
+        record_every: record_every?,
+        compare: compare?,
+    })
+}
+
+fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, Breakage)> {
+    let default = Settings::default();
+    let (number, positive) = (Dimension::Number, Bound::Positive);
+    let tolerance = file.tolerance.as_ref();
+    let tolerance = checker.number_or(default.tolerance, tolerance, "tolerance", number, positive);
+    let ties = file.tie_tolerance.as_ref();
+    let ties = checker.number_or(
+        default.tie_tolerance,
+        ties,
+        "tie_tolerance",
+        number,
+        Bound::NonNegative,
+    );
+    let iteration = file
+        .iteration
+        .as_ref()
+        .map_or(Some(default.iteration), |word| {
+            let choices = [
+                ("secant", Iteration::Secant),
+                ("tangent", Iteration::Tangent),
+            ];
+            checker.word(word, "iteration", &choices)
+        });
+    let available = |word: &Option<Placed<String>>,
+                     key: &str,
+                     choices: &[(&str, bool)],
+                     checker: &mut Checker| {
+        let Some(word) = word else {
+            return Some(());
+        };
+        if checker.word(word, key, choices)? {
+            return Some(());
+        }
+        checker.refuse(&word.span, &format!("`{key} = \"{}\"`", word.value));
+        None
+    };
+    let solvers = [("auto", true), ("direct", true), ("iterative", false)];
+    let controls = [
+        ("load", true),
+        ("displacement", false),
+        ("dissipation", false),
+        ("auto", false),
+    ];
+    let solver = available(&file.solver, "solver", &solvers, checker);
+    let control = available(&file.control, "control", &controls, checker);
+    let breakage = breakage(file.breakage.as_ref(), checker);
+    (solver?, control?);
+    let settings = Settings {
+        tolerance: tolerance?,
+        iteration: iteration?,
+        tie_tolerance: ties?,
+        ..default
+    };
+    Some((settings, breakage?))
+}
+
+fn breakage(word: Option<&Placed<String>>, checker: &mut Checker) -> Option<Breakage> {
+    let Some(word) = word else {
+        return Some(Breakage::default());
+    };
+    let choices = [
+        ("worst-first", Some(Breakage::WorstFirst)),
+        ("simultaneous", Some(Breakage::Simultaneous)),
+        ("event-driven", None),
+    ];
+    let breakage = checker.word(word, "breakage", &choices)?;
+    if breakage.is_none() {
+        checker.refuse(&word.span, "`breakage = \"event-driven\"`");
+    }
+    breakage
+}
+
+fn window(file: &MeasureFile, checker: &mut Checker) -> Option<WindowPlan> {
+    let Some(window) = &file.window else {
+        return Some(WindowPlan::Undisturbed);
+    };
+    match &window.value {
+        ValueOr::Value(Quantity::Text(text)) => {
+            let word = Placed {
+                value: text.clone(),
+                span: window.span.clone(),
+            };
+            let all = checker.word(&word, "window", &[("undisturbed", false), ("all", true)])?;
+            Some(if all {
+                WindowPlan::All
+            } else {
+                WindowPlan::Undisturbed
+            })
+        }
+        ValueOr::Value(Quantity::Number(number)) => {
+            checker.push(Problem::at(
+                &window.span,
+                format!("`window` cannot be {number}"),
+                "expected \"undisturbed\", \"all\", ranges of `x` and `y`, or `ids`",
+            ));
+            None
+        }
+        ValueOr::Table(table) => window_table(table, window, checker),
+    }
+}
+
+fn window_table(
+    table: &WindowFile,
+    window: &Placed<ValueOr<WindowFile>>,
+    checker: &mut Checker,
+) -> Option<WindowPlan> {
+    enum Kind<'a> {
+        Ranges,
+        Ids(&'a Placed<Vec<Placed<i64>>>),
+    }
+    let WindowFile { x, y, ids } = table;
+    let alternatives = [
+        (
+            "x, y",
+            x.as_ref().or(y.as_ref()).map(|r| (Kind::Ranges, &r.span)),
+        ),
+        ("ids", ids.as_ref().map(|i| (Kind::Ids(i), &i.span))),
+    ];
+    match checker.exactly_one(&window.span, "the choice of grains", alternatives)? {
+        Kind::Ids(ids) => Some(WindowPlan::Ids(ids.clone())),
+        Kind::Ranges => {
+            let x = optional_range(x.as_ref(), "x", checker);
+            let y = optional_range(y.as_ref(), "y", checker);
+            Some(WindowPlan::Within(
+                Ranges { x: x?, y: y? },
+                window.span.clone(),
+            ))
+        }
+    }
+}
+
+fn existing(file: &Placed<String>, folder: &Path, checker: &mut Checker) -> Option<PathBuf> {
+    let path = folder.join(&file.value);
+    if path.is_file() {
+        return Some(path);
+    }
+    checker.push(Problem::at(
+        &file.span,
+        format!("there is no file `{}`", file.value),
+        "expected a csv file, its name relative to the scene's folder",
+    ));
+    None
+}

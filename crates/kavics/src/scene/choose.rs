@@ -1,0 +1,129 @@
+//! Choices of grains, found among the placed grains.
+
+use super::check_loading::{ChoiceKind, ChoicePlan};
+use super::checker::Checker;
+use super::diagnostic::Problem;
+use super::value::Placed;
+use crate::assembly::{Assembly, Grain};
+use crate::geometry::Vector;
+use crate::ids::{GrainId, PerGrain, SideId};
+
+/// The grains of a choice, in the order of their ids; none is an error.
+pub fn choose(
+    choice: &ChoicePlan,
+    assembly: &Assembly,
+    tolerance: f64,
+    checker: &mut Checker,
+) -> Vec<GrainId> {
+    let grains = &assembly.grains;
+    let chosen = match &choice.kind {
+        ChoiceKind::Ids(ids) => return by_id(ids, grains, checker),
+        ChoiceKind::Edge(edge) => touching(SideId(*edge as u32), assembly, tolerance),
+        ChoiceKind::Within(ranges) => within(grains, |centre| ranges.contain(centre)),
+        ChoiceKind::Boundary => boundary(assembly),
+    };
+    if chosen.is_empty() {
+        let expected = match &choice.kind {
+            ChoiceKind::Edge(edge) => nearest(SideId(*edge as u32), assembly),
+            _ => where_centres_lie(grains),
+        };
+        checker.push(Problem::at(&choice.span, "this names no grain", expected));
+    }
+    chosen
+}
+
+/// Grains by id, each checked.
+pub fn by_id(ids: &[Placed<i64>], grains: &PerGrain<Grain>, checker: &mut Checker) -> Vec<GrainId> {
+    let mut chosen = Vec::new();
+    for id in ids {
+        match u32::try_from(id.value) {
+            Ok(found) if (found as usize) < grains.len() => chosen.push(GrainId(found)),
+            _ => checker.push(Problem::at(
+                &id.span,
+                format!("there is no grain {}", id.value),
+                format!("expected an id from 0 to {}", grains.len() - 1),
+            )),
+        }
+    }
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// Grains with their centre where it should be.
+pub fn within(grains: &PerGrain<Grain>, contain: impl Fn(Vector) -> bool) -> Vec<GrainId> {
+    grains
+        .iter()
+        .filter(|(_, grain)| contain(grain.centre))
+        .map(|(id, _)| id)
+        .collect()
+}
+
+/// What the centres of the grains span, as an expectation.
+pub fn where_centres_lie(grains: &PerGrain<Grain>) -> String {
+    let span = |value: fn(&Grain) -> f64| {
+        grains
+            .values()
+            .iter()
+            .map(value)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            })
+    };
+    let ([left, right], [low, high]) = (span(|g| g.centre.x), span(|g| g.centre.y));
+    format!("centres of grains lie at x from {left:.6} to {right:.6}, y from {low:.6} to {high:.6}")
+}
+
+fn gap(side: SideId, assembly: &Assembly, grain: &Grain) -> f64 {
+    assembly.sides[side].distance(grain.centre) - grain.radius
+}
+
+fn touching(side: SideId, assembly: &Assembly, tolerance: f64) -> Vec<GrainId> {
+    assembly
+        .grains
+        .iter()
+        .filter(|(_, grain)| gap(side, assembly, grain) <= tolerance)
+        .map(|(id, _)| id)
+        .collect()
+}
+
+fn nearest(side: SideId, assembly: &Assembly) -> String {
+    let gaps = assembly
+        .grains
+        .iter()
+        .map(|(id, grain)| (gap(side, assembly, grain), id));
+    let name = &assembly.sides[side].name;
+    match gaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((gap, id)) => {
+            format!("the grain nearest to the {name} edge is {id}, at a gap of {gap:.6}")
+        }
+        None => "there is no grain".to_owned(),
+    }
+}
+
+/// Grains around which the triangles do not close: those at the container or the hull of the assembly.
+fn boundary(assembly: &Assembly) -> Vec<GrainId> {
+    // Each triangle has, seen from a grain, a first and a second other corner; around an inner grain each
+    // neighbour is first once and second once.
+    let mut corners: Vec<[Vec<GrainId>; 2]> =
+        vec![<[Vec<GrainId>; 2]>::default(); assembly.grains.len()];
+    for [a, b, c] in &assembly.triangles {
+        for (grain, first, second) in [(a, b, c), (b, c, a), (c, a, b)] {
+            let [firsts, seconds] = &mut corners[grain.0 as usize];
+            firsts.push(*first);
+            seconds.push(*second);
+        }
+    }
+    let is_inner = |[firsts, seconds]: &mut [Vec<GrainId>; 2]| {
+        firsts.sort_unstable();
+        seconds.sort_unstable();
+        !firsts.is_empty() && firsts == seconds
+    };
+    let outer = corners.iter_mut().map(|corners| !is_inner(corners));
+    assembly
+        .grains
+        .ids()
+        .zip(outer)
+        .filter_map(|(id, outer)| outer.then_some(id))
+        .collect()
+}

@@ -1,0 +1,191 @@
+//! What is wrong with a scene, shown in its lines.
+
+use std::ops::Range;
+
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+/// A mistake in the scene file.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    message: String,
+    marks: Vec<Mark>,
+    help: Vec<String>,
+}
+
+#[derive(Clone, Debug)]
+struct Mark {
+    span: Range<usize>,
+    label: String,
+}
+
+impl Problem {
+    /// A mistake at a place, with what is wrong there.
+    pub fn at(span: &Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            marks: vec![Mark {
+                span: span.clone(),
+                label: label.into(),
+            }],
+            help: Vec::new(),
+        }
+    }
+
+    /// The same mistake with another place that has to do with it.
+    pub fn and(mut self, span: &Range<usize>, label: impl Into<String>) -> Self {
+        self.marks.push(Mark {
+            span: span.clone(),
+            label: label.into(),
+        });
+        self
+    }
+
+    /// The same mistake with what was expected.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help.push(help.into());
+        self
+    }
+
+    /// The same mistake with a likely correction, if there is one.
+    pub fn suggest(self, suggestion: Option<&str>) -> Self {
+        match suggestion {
+            Some(name) => self.help(format!("did you mean `{name}`?")),
+            None => self,
+        }
+    }
+
+    fn render(&self, text: &str, name: &str) -> String {
+        let mut snippet = Snippet::source(text).path(name);
+        for (i, mark) in self.marks.iter().enumerate() {
+            let kind = if i == 0 {
+                AnnotationKind::Primary
+            } else {
+                AnnotationKind::Context
+            };
+            let span = shown(&mark.span, text);
+            snippet = snippet.annotation(kind.span(span).label(mark.label.as_str()));
+        }
+        let mut group = Level::ERROR
+            .primary_title(self.message.as_str())
+            .element(snippet);
+        for help in &self.help {
+            group = group.element(Level::HELP.message(help.as_str()));
+        }
+        let renderer = Renderer::plain().decor_style(DecorStyle::Ascii);
+        renderer.render(&[group])
+    }
+}
+
+/// A span cut to what exists of the text, and to its first line.
+fn shown(span: &Range<usize>, text: &str) -> Range<usize> {
+    let floor = |mut at: usize| {
+        at = at.min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    };
+    let start = floor(span.start);
+    let end = floor(span.end).max(start);
+    let line = text[start..end].find('\n').map_or(end, |n| start + n);
+    start..line
+}
+
+/// The mistakes found so far.
+#[derive(Debug, Default)]
+pub struct Problems {
+    list: Vec<Problem>,
+}
+
+impl Problems {
+    /// Adds a mistake.
+    pub fn push(&mut self, problem: Problem) {
+        self.list.push(problem);
+    }
+
+    /// Whether none was found.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// All mistakes as the user sees them, in the order of their places.
+    pub fn render(mut self, text: &str, name: &str) -> String {
+        self.list.sort_by_key(|problem| problem.marks[0].span.start);
+        let blocks: Vec<String> = self.list.iter().map(|p| p.render(text, name)).collect();
+        blocks.join("\n\n")
+    }
+}
+
+/// The candidate that a mistyped name is likely to be.
+pub fn likely<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let similarity = |candidate: &str| strsim::damerau_levenshtein(name, candidate);
+    candidates
+        .into_iter()
+        .map(|candidate| (similarity(candidate), candidate))
+        .filter(|(distance, candidate)| {
+            *distance <= (name.chars().count().max(candidate.chars().count()) / 3).max(1)
+                && *distance < name.chars().count()
+        })
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Names in a sentence: "`a`, `b` or `c`".
+pub fn either<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    match names.split_last() {
+        None => String::new(),
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+    }
+}
+
+/// What the TOML reader says, in our words.
+pub fn from_toml(error: &toml::de::Error) -> Problem {
+    let span = error.span().unwrap_or(0..0);
+    let message = error.message();
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let suggested =
+        |name: &str, names: &[&str]| likely(name, names.iter().copied()).map(str::to_owned);
+    match quoted.split_first() {
+        Some((key, names)) if message.starts_with("unknown field") => {
+            let problem = Problem::at(&span, format!("unknown key `{key}`"), "not known here");
+            let known = if names.is_empty() {
+                "nothing is expected here".to_owned()
+            } else {
+                format!("expected {}", either(names.iter().copied()))
+            };
+            problem
+                .help(known)
+                .suggest(suggested(key, names).as_deref())
+        }
+        Some((key, [])) if message.starts_with("missing field") => Problem::at(
+            &span,
+            format!("missing key `{key}`"),
+            format!("`{key}` is missing here"),
+        ),
+        _ => match message.split_once(", expected ") {
+            Some((what, expected)) => Problem::at(&span, what, format!("expected {expected}")),
+            None => Problem::at(&span, "this is not TOML as a scene has it", message),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn likely_names_are_near() {
+        assert_eq!(likely("mortr", ["grit", "mortar"]), Some("mortar"));
+        assert_eq!(likely("xyz", ["grit", "mortar"]), None);
+        assert_eq!(likely("x", ["y"]), None);
+    }
+
+    #[test]
+    fn a_span_outside_the_text_is_cut() {
+        assert_eq!(shown(&(3..90), "aé"), 3..3);
+        assert_eq!(shown(&(2..90), "aé\nb"), 1..3);
+    }
+}

@@ -1,0 +1,607 @@
+//! The scene file word for word: tables, keys and their types. Nothing is checked here but names and types.
+
+use serde::Deserialize;
+
+use super::value::{Described, ListOr, Named, Number, Placed, Quantity, ValueOr};
+
+/// A scene file of kavics.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SceneFile {
+    /// Title for the report.
+    pub title: Option<String>,
+    /// Where every random choice comes from; 0 when absent.
+    pub seed: Option<Placed<i64>>,
+    /// Thickness out of the plane; 1 when absent [length].
+    pub thickness: Option<Number>,
+    /// The container.
+    #[serde(rename = "box")]
+    pub container: Option<Placed<BoxFile>>,
+    /// How the grains are placed: exactly one of the tables.
+    pub grains: Option<Placed<GrainsFile>>,
+    /// Several layers of grains: not available in this version.
+    #[cfg_attr(feature = "schema", schemars(skip))]
+    pub layer: Option<Placed<serde::de::IgnoredAny>>,
+    /// Which grains carry a contact.
+    pub contacts: Option<Placed<ContactsFile>>,
+    /// Contact properties by name.
+    #[serde(default)]
+    pub contact: Named<Placed<PropertyFile>>,
+    /// Which contact property where; a later zone wins.
+    #[serde(default)]
+    pub zone: Vec<Placed<ZoneFile>>,
+    /// The sides of the box that grains touch, by name; sides not named are absent.
+    pub side: Option<SidesFile>,
+    /// Freedoms of grains that never move.
+    #[serde(default)]
+    pub support: Vec<Placed<SupportFile>>,
+    /// Weight of the grains.
+    pub weight: Option<Placed<WeightFile>>,
+    /// Prescribed motions.
+    #[serde(default, rename = "move")]
+    pub moves: Vec<Placed<MoveFile>>,
+    /// Forces on edges, grains and sides.
+    #[serde(default)]
+    pub load: Vec<Placed<LoadFile>>,
+    /// The parts of the load path.
+    #[serde(default)]
+    pub stage: Vec<Placed<StageFile>>,
+    /// How equilibria are found.
+    pub equilibrium: Option<EquilibriumFile>,
+    /// What is measured.
+    pub measure: Option<MeasureFile>,
+    /// What is written.
+    pub record: Option<RecordFile>,
+    /// Table to set beside the run.
+    pub compare: Option<CompareFile>,
+}
+
+/// The container: a box whose lower left corner is the origin.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BoxFile {
+    /// Width [length].
+    pub width: Option<Number>,
+    /// Height [length], or "fit": the box ends at the top of the highest grain.
+    pub height: Option<Number>,
+    /// Corners of a convex container: not available in this version.
+    #[cfg_attr(feature = "schema", schemars(skip))]
+    pub polygon: Option<Placed<serde::de::IgnoredAny>>,
+}
+
+/// How the grains are placed: exactly one of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct GrainsFile {
+    /// Rows of equal discs, each row in the gaps of the one below.
+    pub hexagonal: Option<Placed<LatticeFile>>,
+    /// Rows of equal discs, each disc above one of the row below.
+    pub square: Option<Placed<LatticeFile>>,
+    /// Discs that fall one after another and roll until they rest.
+    pub dropped: Option<Placed<DroppedFile>>,
+    /// Discs from a table.
+    pub listed: Option<Placed<ListedFile>>,
+}
+
+/// Regular rows of equal discs.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LatticeFile {
+    /// Radius [length].
+    pub radius: Number,
+    /// Number of grains in each row from the bottom, or number of rows and length of the longest.
+    pub rows: Placed<ListOr<i64, RowCountFile>>,
+}
+
+/// Rows by their number.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RowCountFile {
+    /// Number of rows.
+    pub count: Placed<i64>,
+    /// Grains in the longest row, which is the lowest.
+    pub longest: Placed<i64>,
+}
+
+impl Described for RowCountFile {
+    const EXPECTED: &'static str =
+        "a list of row lengths such as `[5, 4, 5]`, or `{ count = 3, longest = 5 }`";
+}
+
+/// Grains that are dropped into the box.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DroppedFile {
+    /// Number of grains; until the box is full when absent.
+    pub count: Option<Placed<i64>>,
+    /// Radius, or the limits between which it is uniform [length].
+    pub radius: Option<Placed<ValueOr<RadiiFile>>>,
+    /// Sieve curve, in place of a radius.
+    pub sieve: Option<Placed<SieveFile>>,
+    /// Each grain rests at the lowest place of so many drops; 1 when absent.
+    pub tries: Option<Placed<i64>>,
+}
+
+/// Radii between two limits.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RadiiFile {
+    /// Smallest radius [length].
+    pub from: Number,
+    /// Largest radius [length].
+    pub to: Number,
+}
+
+impl Described for RadiiFile {
+    const EXPECTED: &'static str = "a radius, or `{ from = 0.5, to = 1.5 }`";
+}
+
+/// A sieve curve.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SieveFile {
+    /// Diameters, growing [length].
+    pub diameter: Placed<Vec<Number>>,
+    /// Share of the mass with a smaller diameter, from 0 to 1.
+    pub passing: Placed<Vec<Number>>,
+    /// "disc": mass as diameter squared (when absent); "sphere": cubed.
+    pub mass: Option<Placed<String>>,
+}
+
+/// Grains from a table.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ListedFile {
+    /// A csv or parquet file with columns x, y, radius.
+    pub file: Placed<String>,
+}
+
+/// Which grains carry a contact.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ContactsFile {
+    /// "touching" (when absent) or "neighbours": every edge of the power diagram.
+    pub between: Option<Placed<String>>,
+    /// Gap up to which grains touch, and overlap that is allowed, in mean radii; 1e-7 when absent.
+    pub touching_tolerance: Option<Number>,
+}
+
+/// A contact property: exactly one law.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PropertyFile {
+    /// Normal force, shear force and moment; breaks.
+    pub cemented: Option<Placed<CementedFile>>,
+    /// Compression and shear only; opens and closes.
+    pub cohesionless: Option<Placed<CohesionlessFile>>,
+}
+
+/// A cemented contact.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CementedFile {
+    /// Stiffness: exactly one of the tables.
+    pub stiffness: Placed<StiffnessFile>,
+    /// Factor by which compression stiffens shear, G = G0 - mu*E*v_n/s; 0 when absent.
+    pub shear_hardening: Option<Number>,
+    /// "printed" (when absent), "potential" or "history".
+    pub reading: Option<Placed<String>>,
+    /// Share of G0 below which G does not fall.
+    pub shear_floor: Option<Number>,
+    /// "tangent" (when absent) or "midpoint" of the dual edge.
+    pub contact_point: Option<Placed<String>>,
+    /// Whether the contact point's place on the dual edge couples normal force and bending.
+    pub eccentric: Option<bool>,
+    /// "capped" (when absent), "full", or a length.
+    pub dual_length: Option<Number>,
+    /// Limits of the force components.
+    pub strength: Option<Placed<StrengthFile>>,
+    /// Energy of a softening bond: not available in this version.
+    #[cfg_attr(feature = "schema", schemars(skip))]
+    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
+    /// "void" (when absent) or the name of another contact.
+    pub after_breakage: Option<Placed<String>>,
+}
+
+/// A contact without cement.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CohesionlessFile {
+    /// Stiffness: exactly one of the tables.
+    pub stiffness: Placed<StiffnessFile>,
+    /// Factor by which compression stiffens shear; 0 when absent.
+    pub shear_hardening: Option<Number>,
+    /// "printed" (when absent), "potential" or "history".
+    pub reading: Option<Placed<String>>,
+    /// Share of G0 below which G does not fall.
+    pub shear_floor: Option<Number>,
+    /// "tangent" (when absent) or "midpoint" of the dual edge.
+    pub contact_point: Option<Placed<String>>,
+    /// "capped" (when absent), "full", or a length.
+    pub dual_length: Option<Number>,
+    /// Coulomb friction coefficient; the law as printed when absent.
+    pub friction: Option<Number>,
+}
+
+/// Stiffness: exactly one of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StiffnessFile {
+    /// k = E*s, G*s, E*s^3/12 [force/length^3].
+    pub layer: Option<Placed<ModuliFile>>,
+    /// k = E*s/l, G*s/l, E*s^3/(12*l) [force/length^2].
+    pub modulus: Option<Placed<ModuliFile>>,
+    /// The stiffnesses themselves [force/length], moment [force*length].
+    pub direct: Option<Placed<DirectFile>>,
+}
+
+/// Moduli of a contact.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ModuliFile {
+    /// Normal modulus E.
+    pub normal: Number,
+    /// Shear modulus G0.
+    pub shear: Number,
+}
+
+/// Stiffnesses of a contact.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DirectFile {
+    /// Normal stiffness [force/length].
+    pub normal: Number,
+    /// Shear stiffness [force/length].
+    pub shear: Number,
+    /// Bending stiffness [force*length]; for cemented contacts.
+    pub moment: Option<Number>,
+}
+
+/// Strength of a bond: stresses or forces; a missing one never fails.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrengthFile {
+    /// Limits as stress over the dual edge [force/length^2].
+    pub stress: Option<Placed<LimitsFile>>,
+    /// Limits as force [force], bending as moment [force*length].
+    pub force: Option<Placed<LimitsFile>>,
+    /// A factor on all limits, drawn for each contact.
+    pub scatter: Option<Placed<ScatterFile>>,
+    /// Energy of a softening bond: not available in this version.
+    #[cfg_attr(feature = "schema", schemars(skip))]
+    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
+}
+
+/// Limits of the force components, each positive.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LimitsFile {
+    /// Limit of tension.
+    pub tension: Option<Number>,
+    /// Limit of compression.
+    pub compression: Option<Number>,
+    /// Limit of shear.
+    pub shear: Option<Number>,
+    /// Limit of bending.
+    pub bending: Option<Number>,
+}
+
+/// How strengths scatter: exactly one of these.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ScatterFile {
+    /// Weibull distribution.
+    pub weibull: Option<Placed<WeibullFile>>,
+    /// Uniform distribution.
+    pub uniform: Option<Placed<UniformFile>>,
+    /// Lognormal distribution.
+    pub lognormal: Option<Placed<LognormalFile>>,
+}
+
+/// Weibull distribution.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WeibullFile {
+    /// Shape.
+    pub shape: Number,
+    /// Scale; 1 when absent.
+    pub scale: Option<Number>,
+}
+
+/// Uniform distribution.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct UniformFile {
+    /// Smallest factor.
+    pub from: Number,
+    /// Largest factor.
+    pub to: Number,
+}
+
+/// Lognormal distribution.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LognormalFile {
+    /// Standard deviation of the logarithm.
+    pub deviation: Number,
+    /// Median; 1 when absent.
+    pub median: Option<Number>,
+}
+
+/// Which contact property where: everywhere, in a strip, or a random share.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ZoneFile {
+    /// Name of a contact property.
+    pub contact: Placed<String>,
+    /// Contact points in a strip.
+    pub strip: Option<Placed<RangesFile>>,
+    /// Share of all contacts, at random.
+    pub share: Option<Number>,
+}
+
+/// Ranges of coordinates; either may be missing.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RangesFile {
+    /// From and to [length].
+    pub x: Option<Placed<Vec<Number>>>,
+    /// From and to [length].
+    pub y: Option<Placed<Vec<Number>>>,
+}
+
+/// The sides of the box.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SidesFile {
+    /// The left side.
+    pub left: Option<Placed<SideFile>>,
+    /// The right side.
+    pub right: Option<Placed<SideFile>>,
+    /// The floor.
+    pub bottom: Option<Placed<SideFile>>,
+    /// The lid.
+    pub top: Option<Placed<SideFile>>,
+}
+
+/// A side of the box: a rigid body that grains touch.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SideFile {
+    /// Name of the contact property of its contacts.
+    pub contact: Placed<String>,
+    /// Grains whose gap to the side is at most this are joined to it, in mean radii; 0 when absent.
+    pub reach: Option<Number>,
+    /// Its free freedoms, of "x", "y", "rotation"; none when absent.
+    pub free: Option<Vec<Placed<String>>>,
+}
+
+/// Freedoms of grains that never move.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SupportFile {
+    /// Which grains.
+    pub grains: Placed<ChoiceFile>,
+    /// Which freedoms, of "x", "y", "rotation".
+    pub fix: Placed<Vec<Placed<String>>>,
+}
+
+/// A choice of grains: exactly one kind.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ChoiceFile {
+    /// Grains that touch an edge of the box: "left", "right", "bottom" or "top".
+    pub edge: Option<Placed<String>>,
+    /// Grains by id.
+    pub ids: Option<Placed<Vec<Placed<i64>>>>,
+    /// Grains with their centre in a range of x [length].
+    pub x: Option<Placed<Vec<Number>>>,
+    /// Grains with their centre in a range of y [length].
+    pub y: Option<Placed<Vec<Number>>>,
+    /// true: grains on the boundary of the assembly.
+    pub boundary: Option<Placed<bool>>,
+}
+
+/// Weight of the grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WeightFile {
+    /// Density of the grains [mass/length^3].
+    pub density: Number,
+    /// Acceleration of gravity; 9.81 when absent [length/time^2].
+    pub gravity: Option<Number>,
+}
+
+/// A prescribed motion of a side or of grains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MoveFile {
+    /// Name for stages.
+    pub name: Placed<String>,
+    /// A side that moves: "left", "right", "bottom" or "top".
+    pub side: Option<Placed<String>>,
+    /// Grains that move.
+    pub grains: Option<Placed<ChoiceFile>>,
+    /// Displacement to the right at factor 1 [length].
+    pub x: Option<Number>,
+    /// Displacement upwards at factor 1 [length].
+    pub y: Option<Number>,
+    /// Rotation at factor 1 [radian], or "free" beside a strain.
+    pub rotation: Option<Number>,
+    /// Affine motion of the grains about the centre of the box.
+    pub strain: Option<Placed<StrainFile>>,
+}
+
+/// Displacement gradient of an affine motion; a missing one is 0.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StrainFile {
+    /// du_x/dx.
+    pub xx: Option<Number>,
+    /// du_y/dx.
+    pub xy: Option<Number>,
+    /// du_x/dy.
+    pub yx: Option<Number>,
+    /// du_y/dy.
+    pub yy: Option<Number>,
+}
+
+/// A load: on an edge, on grains or on a side.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LoadFile {
+    /// Name for stages.
+    pub name: Placed<String>,
+    /// Edge of the box along which the load is distributed.
+    pub edge: Option<Placed<String>>,
+    /// At the edge's start and end, positive along its outward normal [force/length].
+    pub normal: Option<Placed<Vec<Number>>>,
+    /// At the edge's start and end, positive along the edge [force/length].
+    pub shear: Option<Placed<Vec<Number>>>,
+    /// Grains that each carry the force.
+    pub grains: Option<Placed<ChoiceFile>>,
+    /// Side that carries the force.
+    pub side: Option<Placed<String>>,
+    /// The force.
+    pub force: Option<Placed<ForceFile>>,
+}
+
+/// A force and a moment; a missing one is 0.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ForceFile {
+    /// To the right [force].
+    pub x: Option<Number>,
+    /// Upwards [force].
+    pub y: Option<Number>,
+    /// Counter-clockwise [force*length].
+    pub moment: Option<Number>,
+}
+
+/// A part of the load path.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StageFile {
+    /// Name in the results.
+    pub name: Option<String>,
+    /// Loads, moves and "weight" that this stage drives; all of them when absent.
+    pub apply: Option<Placed<Vec<Placed<String>>>>,
+    /// The factor at the end of each load step.
+    pub factors: Placed<ListOr<Quantity, SeriesFile>>,
+}
+
+/// Factors in equal steps from the last one.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SeriesFile {
+    /// Last factor.
+    pub to: Number,
+    /// Number of load steps.
+    pub steps: Placed<i64>,
+}
+
+impl Described for SeriesFile {
+    const EXPECTED: &'static str =
+        "a list of factors such as `[1.0, 1.2]`, or `{ to = 3.0, steps = 60 }`";
+}
+
+/// How equilibria are found.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EquilibriumFile {
+    /// Bound on the residual; 1e-10 when absent.
+    pub tolerance: Option<Number>,
+    /// "secant" (when absent) or "tangent".
+    pub iteration: Option<Placed<String>>,
+    /// "worst-first" (when absent) or "simultaneous".
+    pub breakage: Option<Placed<String>>,
+    /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
+    pub tie_tolerance: Option<Number>,
+    /// "auto" (when absent) or "direct".
+    pub solver: Option<Placed<String>>,
+    /// "load".
+    pub control: Option<Placed<String>>,
+}
+
+/// What is measured.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MeasureFile {
+    /// "undisturbed" (when absent), "all", ranges of x and y, or ids.
+    pub window: Option<Placed<ValueOr<WindowFile>>>,
+    /// "step" (when absent) or "iteration".
+    pub every: Option<Placed<String>>,
+}
+
+/// Grains of the window.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WindowFile {
+    /// Grains with their centre in a range of x [length].
+    pub x: Option<Placed<Vec<Number>>>,
+    /// Grains with their centre in a range of y [length].
+    pub y: Option<Placed<Vec<Number>>>,
+    /// Grains by id.
+    pub ids: Option<Placed<Vec<Placed<i64>>>>,
+}
+
+impl Described for WindowFile {
+    const EXPECTED: &'static str =
+        "`\"undisturbed\"`, `\"all\"`, `{ x = [0, 1], y = [0, 1] }` or `{ ids = [0, 1] }`";
+}
+
+/// What is written.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RecordFile {
+    /// Grains and contacts of every k-th load step; 1 when absent.
+    pub every: Option<Placed<i64>>,
+}
+
+/// Table to set beside the run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CompareFile {
+    /// A csv file with columns of `steps`.
+    pub file: Placed<String>,
+}

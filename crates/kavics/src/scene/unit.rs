@@ -1,0 +1,332 @@
+//! Numbers with a unit, turned into SI.
+//!
+//! A unit is made of simple ones, which `uom` knows, with `/`, `·` or `*`, and powers: `30 GPa`, `2.5 mm`,
+//! `12 kN/m`, `2.4 t/m^3`.
+
+use uom::si::f64::{Acceleration, Angle, Energy, Force, Length, Mass, Pressure, Ratio, Time};
+
+/// Powers of mass, length and time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Powers {
+    mass: i32,
+    length: i32,
+    time: i32,
+}
+
+impl Powers {
+    const NONE: Self = Self::new(0, 0, 0);
+
+    const fn new(mass: i32, length: i32, time: i32) -> Self {
+        Self { mass, length, time }
+    }
+
+    fn plus(self, other: Self, power: i32) -> Self {
+        Self {
+            mass: self.mass + power * other.mass,
+            length: self.length + power * other.length,
+            time: self.time + power * other.time,
+        }
+    }
+
+    fn is_sane(self) -> bool {
+        [self.mass, self.length, self.time]
+            .iter()
+            .all(|p| p.abs() <= 12)
+    }
+}
+
+/// What a number of the scene file measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A number without unit.
+    Number,
+    /// An angle.
+    Angle,
+    /// A length.
+    Length,
+    /// A force.
+    Force,
+    /// A moment, `[force·length]`.
+    Moment,
+    /// `[force/length]`.
+    ForcePerLength,
+    /// `[force/length²]`.
+    Stress,
+    /// `[force/length³]`.
+    StressPerLength,
+    /// `[mass/length³]`.
+    Density,
+    /// `[length/time²]`.
+    Acceleration,
+}
+
+impl Dimension {
+    const ALL: [Self; 10] = [
+        Self::Number,
+        Self::Angle,
+        Self::Length,
+        Self::Force,
+        Self::Moment,
+        Self::ForcePerLength,
+        Self::Stress,
+        Self::StressPerLength,
+        Self::Density,
+        Self::Acceleration,
+    ];
+
+    fn powers(self) -> Powers {
+        match self {
+            Self::Number | Self::Angle => Powers::NONE,
+            Self::Length => Powers::new(0, 1, 0),
+            Self::Force => Powers::new(1, 1, -2),
+            Self::Moment => Powers::new(1, 2, -2),
+            Self::ForcePerLength => Powers::new(1, 0, -2),
+            Self::Stress => Powers::new(1, -1, -2),
+            Self::StressPerLength => Powers::new(1, -2, -2),
+            Self::Density => Powers::new(1, -3, 0),
+            Self::Acceleration => Powers::new(0, 1, -2),
+        }
+    }
+
+    /// What it is called in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Number => "a number without unit",
+            Self::Angle => "an angle",
+            Self::Length => "a length",
+            Self::Force => "a force",
+            Self::Moment => "a moment (force·length)",
+            Self::ForcePerLength => "a force per length",
+            Self::Stress => "a stress (force/length²)",
+            Self::StressPerLength => "a stress per length (force/length³)",
+            Self::Density => "a density (mass/length³)",
+            Self::Acceleration => "an acceleration (length/time²)",
+        }
+    }
+
+    /// How it may be written.
+    pub fn examples(self) -> &'static str {
+        match self {
+            Self::Number => "`0.5`",
+            Self::Angle => "`0.1`, `\"0.1 rad\"` or `\"5 deg\"`",
+            Self::Length => "`2.5`, `\"2.5 mm\"` or `\"0.3 m\"`",
+            Self::Force => "`12.0`, `\"12 kN\"` or `\"800 N\"`",
+            Self::Moment => "`12.0`, `\"12 kN·m\"` or `\"800 N·mm\"`",
+            Self::ForcePerLength => "`12.0`, `\"12 kN/m\"` or `\"3 N/mm\"`",
+            Self::Stress => "`3e10`, `\"30 GPa\"` or `\"12 N/mm^2\"`",
+            Self::StressPerLength => "`1e9`, `\"1 GPa/m\"` or `\"3 N/mm^3\"`",
+            Self::Density => "`2400.0`, `\"2400 kg/m^3\"` or `\"2.4 t/m^3\"`",
+            Self::Acceleration => "`9.81` or `\"9.81 m/s^2\"`",
+        }
+    }
+}
+
+/// Why a number with a unit cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum UnitError {
+    /// It does not begin with a number.
+    NoNumber,
+    /// No unit has this name; one that it may have meant.
+    UnknownUnit(String, Option<&'static str>),
+    /// The unit belongs to another dimension, with its name if it has one.
+    WrongDimension(Option<&'static str>),
+}
+
+/// The value of `text` in SI.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
+    let (number, unit) = split(text).ok_or(UnitError::NoNumber)?;
+    let (factor, powers) = factor(unit)?;
+    if powers == dimension.powers() {
+        Ok(number * factor)
+    } else {
+        let is = Dimension::ALL.into_iter().find(|d| d.powers() == powers);
+        Err(UnitError::WrongDimension(is.map(Dimension::name)))
+    }
+}
+
+/// The number at the start of a text, and the rest.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let begins = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.');
+    text.starts_with(begins).then_some(())?;
+    let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
+    // The longest beginning that is a number, so that the e of an exponent belongs to it.
+    ends.take(40)
+        .filter_map(|end| Some((text[..end].parse::<f64>().ok()?, text[end..].trim())))
+        .filter(|(number, _)| number.is_finite())
+        .last()
+}
+
+/// The value of a unit in SI and its powers.
+fn factor(unit: &str) -> Result<(f64, Powers), UnitError> {
+    let mut value = 1.0;
+    let mut powers = Powers::NONE;
+    let mut sign = 1;
+    let mut rest = unit;
+    while !rest.is_empty() {
+        let end = rest.find(['/', '·', '*', '⋅']).unwrap_or(rest.len());
+        let (name, power) = power(rest[..end].trim());
+        let (simple, simple_powers) = simple(name)?;
+        value *= simple.powi(sign * power);
+        powers = powers.plus(simple_powers, sign * power);
+        if !powers.is_sane() {
+            return Err(UnitError::WrongDimension(None));
+        }
+        let mut after = rest[end..].chars();
+        match after.next() {
+            None => break,
+            Some(operator) => sign = if operator == '/' { -1 } else { 1 },
+        }
+        rest = after.as_str();
+        if rest.trim().is_empty() {
+            return Err(UnitError::UnknownUnit(unit.to_owned(), None));
+        }
+    }
+    Ok((value, powers))
+}
+
+/// A unit without its power, and the power.
+fn power(text: &str) -> (&str, i32) {
+    let cut = |suffix: &str, power| text.strip_suffix(suffix).map(|name| (name.trim(), power));
+    let powers = [
+        ("²", 2),
+        ("³", 3),
+        ("^2", 2),
+        ("^3", 3),
+        ("^4", 4),
+        ("^1", 1),
+    ];
+    let inverse = [
+        ("^-1", -1),
+        ("^-2", -2),
+        ("^-3", -3),
+        ("⁻¹", -1),
+        ("⁻²", -2),
+        ("⁻³", -3),
+    ];
+    inverse
+        .iter()
+        .chain(&powers)
+        .find_map(|(suffix, power)| cut(suffix, *power))
+        .unwrap_or((text, 1))
+}
+
+/// Units that a mistyped one is compared with.
+const USUAL: [&str; 24] = [
+    "m", "dm", "cm", "mm", "µm", "km", "N", "kN", "MN", "GN", "mN", "Pa", "kPa", "MPa", "GPa", "g",
+    "kg", "t", "s", "ms", "rad", "deg", "J", "kJ",
+];
+
+/// The value of a simple unit in SI and its powers.
+fn simple(name: &str) -> Result<(f64, Powers), UnitError> {
+    if name.is_empty() {
+        return Err(UnitError::UnknownUnit(String::new(), None));
+    }
+    let name = match name {
+        "deg" => "°",
+        "um" => "µm",
+        name => name,
+    };
+    let text = format!("1 {name}");
+    macro_rules! first_of {
+        ($($quantity:ident: $mass:literal $length:literal $time:literal,)*) => {
+            $(if let Ok(quantity) = text.parse::<$quantity>() {
+                return Ok((quantity.value, Powers::new($mass, $length, $time)));
+            })*
+        };
+    }
+    first_of! {
+        Length: 0 1 0,
+        Force: 1 1 -2,
+        Pressure: 1 -1 -2,
+        Mass: 1 0 0,
+        Time: 0 0 1,
+        Angle: 0 0 0,
+        Energy: 1 2 -2,
+        Acceleration: 0 1 -2,
+        Ratio: 0 0 0,
+    }
+    Err(UnitError::UnknownUnit(name.to_owned(), usual(name)))
+}
+
+/// The usual unit that a mistyped one is likely to be.
+fn usual(name: &str) -> Option<&'static str> {
+    let same_letters = USUAL
+        .into_iter()
+        .find(|usual| usual.eq_ignore_ascii_case(name));
+    same_letters.or_else(|| {
+        USUAL
+            .into_iter()
+            .filter(|usual| usual.len() > 1)
+            .find(|usual| strsim::osa_distance(usual, name) == 1)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(text: &str, dimension: Dimension, value: f64) {
+        let parsed = parse(text, dimension).unwrap_or_else(|e| panic!("{text}: {e:?}"));
+        assert!(
+            (parsed - value).abs() <= 1e-14 * value.abs(),
+            "{text}: {parsed}"
+        );
+    }
+
+    #[test]
+    fn units_become_si() {
+        close("30 GPa", Dimension::Stress, 30e9);
+        close("30GPa", Dimension::Stress, 30e9);
+        close("2.5 mm", Dimension::Length, 2.5e-3);
+        close("-1e-3 m", Dimension::Length, -1e-3);
+        close("12 kN/m", Dimension::ForcePerLength, 12e3);
+        close("1 GPa/m", Dimension::StressPerLength, 1e9);
+        close("3 N/mm^3", Dimension::StressPerLength, 3e9);
+        close("5 N/mm²", Dimension::Stress, 5e6);
+        close("2.4 t/m^3", Dimension::Density, 2400.0);
+        close("9.81 m/s^2", Dimension::Acceleration, 9.81);
+        close("9.81 m/s/s", Dimension::Acceleration, 9.81);
+        close("2 kN·m", Dimension::Moment, 2e3);
+        close("2 kN*mm", Dimension::Moment, 2.0);
+        close("180 deg", Dimension::Angle, std::f64::consts::PI);
+        close("0.1 rad", Dimension::Angle, 0.1);
+        close("2 N·m/rad", Dimension::Moment, 2.0);
+        close("1e3", Dimension::Stress, 1e3);
+        close("3 %", Dimension::Number, 0.03);
+        close(" 7 kg·m^-3 ", Dimension::Density, 7.0);
+    }
+
+    #[test]
+    fn a_wrong_dimension_says_what_it_is() {
+        assert_eq!(
+            parse("30 GPa", Dimension::Length),
+            Err(UnitError::WrongDimension(Some("a stress (force/length²)")))
+        );
+        assert_eq!(
+            parse("30 m/s", Dimension::Length),
+            Err(UnitError::WrongDimension(None))
+        );
+    }
+
+    #[test]
+    fn what_is_no_unit_is_refused() {
+        assert_eq!(parse("GPa", Dimension::Stress), Err(UnitError::NoNumber));
+        assert_eq!(parse("", Dimension::Stress), Err(UnitError::NoNumber));
+        assert_eq!(parse("nan m", Dimension::Length), Err(UnitError::NoNumber));
+        assert_eq!(
+            parse("30 gpa", Dimension::Stress),
+            Err(UnitError::UnknownUnit("gpa".into(), Some("GPa")))
+        );
+        assert_eq!(
+            parse("3 furlongz", Dimension::Length),
+            Err(UnitError::UnknownUnit("furlongz".into(), None))
+        );
+        assert!(matches!(
+            parse("3 kN/", Dimension::Force),
+            Err(UnitError::UnknownUnit(..))
+        ));
+        assert!(parse("3 m^2^2", Dimension::Length).is_err());
+        assert!(parse("3 N//m", Dimension::Length).is_err());
+    }
+}
