@@ -19,8 +19,17 @@ macro_rules! cases {
 
 cases!(
     block_32_reference,
+    block_32_table,
+    brazilian_disc,
+    chain_cantilever,
+    contact_cycles,
+    cut_identities,
+    friction_limits,
     hexagonal_lattice,
+    patch_test,
+    rigid_motion,
     square_lattice,
+    tessellation,
     three_discs,
 );
 
@@ -68,7 +77,7 @@ fn check_case(name: &str) {
     }
     let wrong: Vec<String> = rows
         .iter()
-        .filter_map(|row| row.check(&runs[row.run]).err())
+        .filter_map(|row| row.check(&runs).err())
         .collect();
     let texts: Vec<&str> = runs
         .values()

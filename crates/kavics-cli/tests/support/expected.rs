@@ -7,7 +7,10 @@
 //! * key: of `grains` an id, `*` for all or a state; of `contacts` `first-second` or `*`; of `sides` a name; of
 //!   `events` a number.
 //! * column: sums of products of columns and numbers, such as `stress_xx*window_area-0.5*stress_yy`.
+//! * expected: a number, a word, or `=name` for what the run of that name gives in the same place.
 //! * kind: `abs`, `rel`, `most`, `least` or `text`.
+
+use std::collections::BTreeMap;
 
 use kavics_results::Columns;
 
@@ -45,7 +48,8 @@ impl<'a> Row<'a> {
     }
 
     /// What is wrong with a run, if anything.
-    pub fn check(&self, run: &Run) -> Result<(), String> {
+    pub fn check(&self, runs: &BTreeMap<String, Run>) -> Result<(), String> {
+        let run = &runs[self.run];
         let fail = |found: &dyn std::fmt::Display| {
             let Self {
                 run,
@@ -67,16 +71,19 @@ impl<'a> Row<'a> {
             return wrong.map_or(Ok(()), |word| fail(word));
         }
         let found = self.numbers(run)?;
-        if found.is_empty() {
-            return fail(&"nothing");
+        let expected = match self.expected.strip_prefix('=') {
+            Some(other) => self.numbers(&runs[other])?,
+            None => vec![number(self.expected); found.len()],
+        };
+        if found.is_empty() || found.len() != expected.len() {
+            return fail(&"another number of rows");
         }
-        let wrong = found.iter().find(|value| !self.holds(**value));
-        wrong.map_or(Ok(()), |value| fail(value))
+        let mut pairs = found.iter().zip(expected);
+        let wrong = pairs.find(|(found, expected)| !self.holds(**found, *expected));
+        wrong.map_or(Ok(()), |(found, _)| fail(found))
     }
 
-    fn holds(&self, found: f64) -> bool {
-        let number = |text: &str| -> f64 { text.parse().expect("a number in expected.csv") };
-        let expected = number(self.expected);
+    fn holds(&self, found: f64, expected: f64) -> bool {
         let error = (found - expected).abs();
         match self.kind {
             "abs" => error <= number(self.tolerance),
@@ -158,6 +165,11 @@ impl<'a> Row<'a> {
         }
         Ok((table, rows))
     }
+}
+
+fn number(text: &str) -> f64 {
+    text.parse()
+        .unwrap_or_else(|_| panic!("{text} is no number, in expected.csv"))
 }
 
 /// The values of a sum of products for every row of a table.

@@ -23,7 +23,6 @@ pub fn value(name: &str, run: &Run, step: usize, key: &str) -> f64 {
         "contraction" => contraction(run, step),
         "largest_motion" => largest_motion(&tables()),
         "voigt_ratio" => voigt_ratio(&tables(), &numbers(key)),
-        "poisson" => poisson(run, step),
         other => panic!("no identity is called {other}"),
     }
 }
@@ -341,9 +340,4 @@ fn voigt_ratio(tables: &Tables, key: &[f64]) -> f64 {
         })
         .sum();
     inner / tables.contacts.iter().map(affine).sum::<f64>()
-}
-
-/// ν = σ_xx / σ_yy under uniaxial strain in y, as σ_xx = ν_2D/(1 − ν_2D)… of plane discs: C12/C11.
-fn poisson(run: &Run, step: usize) -> f64 {
-    at_step(run, step, "stress_xx") / at_step(run, step, "stress_yy")
 }
