@@ -11,11 +11,10 @@ use crate::scene_file;
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let scene = scene_file::read(&arguments.scene)?;
     let counts = Counts::of(&scene);
-    let mut text = String::new();
+    let mut out = stdout().lock();
     for (name, value) in counts.lines() {
-        text.push_str(&format!("{name:<11}{value}\n"));
+        writeln!(out, "{name:<11}{value}")?;
     }
-    stdout().write_all(text.as_bytes())?;
     scene_file::show_warnings(&scene.warnings);
     Ok(())
 }

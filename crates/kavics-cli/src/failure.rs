@@ -58,16 +58,27 @@ pub enum Failure {
 impl Failure {
     /// The exit status.
     pub fn status(&self) -> ExitCode {
+        let results = match self {
+            Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),
+            _ => None,
+        };
+        if let Some(
+            ResultsError::Exists { .. }
+            | ResultsError::NotResults { .. }
+            | ResultsError::OtherScene { .. }
+            | ResultsError::UnknownEnding { .. },
+        ) = results
+        {
+            return ExitCode::from(2);
+        }
         ExitCode::from(match self {
-            Self::Scene(SceneError::Unreadable { .. }) => 4,
             Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
-            Self::Results(
-                ResultsError::Exists { .. }
-                | ResultsError::NotResults { .. }
-                | ResultsError::UnknownEnding { .. },
-            ) => 2,
             Self::NoEquilibrium { .. } => 3,
-            Self::Results(_) | Self::Report(_) | Self::Output(_) | Self::Threads(_) => 4,
+            Self::Scene(SceneError::Unreadable { .. })
+            | Self::Results(_)
+            | Self::Report(_)
+            | Self::Output(_)
+            | Self::Threads(_) => 4,
         })
     }
 }

@@ -82,3 +82,53 @@ fn element<'a>(array: &'a mut Item, number: &str) -> Result<&'a mut Item, String
 fn parse_value(text: &str) -> Value {
     text.parse().unwrap_or_else(|_| Value::from(text))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::apply;
+
+    fn applied(text: &str, given: &str) -> String {
+        apply(text, &[given.to_owned()]).expect("a right override")
+    }
+
+    #[test]
+    fn a_value_is_replaced_and_its_comment_stays() {
+        let text = "seed = 1 # of everything\n";
+        assert_eq!(applied(text, "seed=7"), "seed = 7 # of everything\n");
+    }
+
+    #[test]
+    fn an_absent_table_is_made() {
+        assert_eq!(
+            applied("seed = 1\n", "equilibrium.tolerance=1e-12"),
+            "seed = 1\n\n[equilibrium]\ntolerance = 1e-12\n"
+        );
+    }
+
+    #[test]
+    fn an_element_of_a_list_is_found_by_its_number() {
+        let text = "[[stage]]\nfactors = [1.0]\n[[stage]]\nfactors = [2.0]\n";
+        assert_eq!(
+            applied(text, "stage.1.factors=[3.0]"),
+            "[[stage]]\nfactors = [1.0]\n[[stage]]\nfactors = [3.0]\n"
+        );
+        assert_eq!(
+            applied(text, "stage.0.factors.0=5"),
+            "[[stage]]\nfactors = [5]\n[[stage]]\nfactors = [2.0]\n"
+        );
+    }
+
+    #[test]
+    fn a_dotted_key_inside_a_table_is_replaced_in_place() {
+        let text = "[contact.mortar.cemented]\nstiffness.layer = { normal = 1.0, shear = 0.5 }\n";
+        assert_eq!(
+            applied(text, "contact.mortar.cemented.stiffness.layer.shear=0.4"),
+            "[contact.mortar.cemented]\nstiffness.layer = { normal = 1.0, shear = 0.4 }\n"
+        );
+    }
+
+    #[test]
+    fn words_need_no_quotes() {
+        assert_eq!(applied("", "title=Two discs"), "title = \"Two discs\"\n");
+    }
+}

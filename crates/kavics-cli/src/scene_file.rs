@@ -40,9 +40,15 @@ pub fn start_threads(count: Option<usize>) -> Result<usize, Failure> {
     Ok(rayon::current_num_threads())
 }
 
+/// Warnings shown in full; a long run may repeat one at every load step.
+const WARNINGS_SHOWN: usize = 12;
+
 /// Shows what the user should know.
 pub fn show_warnings(warnings: &[String]) {
-    for warning in warnings {
+    for warning in warnings.iter().take(WARNINGS_SHOWN) {
         eprintln!("warning: {warning}");
+    }
+    if let Some(more @ 1..) = warnings.len().checked_sub(WARNINGS_SHOWN) {
+        eprintln!("warning: and {more} more");
     }
 }

@@ -1,11 +1,19 @@
 //! The table that ends a run, 80 columns wide.
 
+use std::fmt::Write;
+
 use kavics::measure::{StressPartition, Tensor};
 use kavics_report::Comparison;
 use kavics_results::StepRow;
 
 /// Load steps shown before and after the gap, where there are more.
 const SHOWN: usize = 10;
+
+/// The same where a load step takes two lines.
+const PARTS_SHOWN: usize = 5;
+
+/// Share of the run's largest stress below which a stress is rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// The load steps and the parts of the stress.
 pub fn summary(steps: &[StepRow]) -> String {
@@ -20,9 +28,12 @@ pub fn summary(steps: &[StepRow]) -> String {
     text
 }
 
-/// A power of ten taken out of stresses that would not fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Scale(i32);
+/// How large the stresses of the run are, and the power of ten taken out of those that would not fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scale {
+    largest: f64,
+    power: i32,
+}
 
 impl Scale {
     fn of(steps: &[StepRow]) -> Self {
@@ -31,23 +42,25 @@ impl Scale {
             .flat_map(components)
             .map(f64::abs)
             .fold(0.0, f64::max);
-        if largest == 0.0 || (0.1..1000.0).contains(&largest) {
-            return Self(0);
+        let fits = largest == 0.0 || (0.1..1000.0).contains(&largest);
+        let thousands = (largest.log10() / 3.0).floor() as i32;
+        Self {
+            largest,
+            power: if fits { 0 } else { 3 * thousands },
         }
-        Self(3 * (largest.log10() / 3.0).floor() as i32)
     }
 
     fn apply(self, value: f64) -> f64 {
         // −0.0 would print as "-0.000".
-        let scaled = value / 10f64.powi(self.0);
+        let scaled = value / 10f64.powi(self.power);
         if scaled.abs() < 5e-4 { 0.0 } else { scaled }
     }
 
     fn heading(self) -> String {
-        if self.0 == 0 {
+        if self.power == 0 {
             String::new()
         } else {
-            format!(" (stresses in 1e{})", self.0)
+            format!(" (stresses in 1e{})", self.power)
         }
     }
 }
@@ -75,7 +88,7 @@ fn steps_table(steps: &[StepRow], scale: Scale) -> String {
         "stress yy",
         "s/v"
     );
-    for row in rows_shown(steps) {
+    for row in rows_shown(steps, SHOWN) {
         text.push_str(&row.map_or_else(|| "    …\n".to_owned(), |row| step_line(row, scale)));
     }
     text
@@ -95,14 +108,14 @@ fn step_line(row: &StepRow, scale: Scale) -> String {
         row.broken,
         shown(stress.map(|s| scaled(s.total.xx))),
         shown(stress.map(|s| scaled(s.total.yy))),
-        shown(stress.and_then(shear_over_variation)),
+        shown(stress.and_then(|parts| shear_over_variation(parts, scale))),
     )
 }
 
 /// The shear part over the normal variation part, by their deviators' magnitudes.
-fn shear_over_variation(parts: StressPartition) -> Option<f64> {
+fn shear_over_variation(parts: StressPartition, scale: Scale) -> Option<f64> {
     let variation = deviator(parts.variation);
-    (variation > 0.0).then(|| deviator(parts.shear) / variation)
+    (variation > ROUNDING * scale.largest).then(|| deviator(parts.shear) / variation)
 }
 
 fn deviator(tensor: Tensor) -> f64 {
@@ -113,15 +126,15 @@ fn deviator(tensor: Tensor) -> f64 {
 
 fn parts_table(steps: &[StepRow], scale: Scale) -> String {
     let mut text = format!(
-        "\nparts of the stress{}\n{:<14}{:^19} {:^19} {:^19} {:>6}\n",
+        "\nparts of the stress{}\n{:<12}{:^19} {:^19} {:^19} {:>8}\n",
         scale.heading(),
-        "step (factor)",
+        "step, factor",
         "shear",
         "variation",
         "fabric",
-        "isotr."
+        "isotrop."
     );
-    for row in rows_shown(steps) {
+    for row in rows_shown(steps, PARTS_SHOWN) {
         match row {
             None => text.push_str("…\n"),
             Some(row) => text.push_str(&part_lines(row, scale)),
@@ -133,7 +146,7 @@ fn parts_table(steps: &[StepRow], scale: Scale) -> String {
 fn part_lines(row: &StepRow, scale: Scale) -> String {
     let label = format!("{} ({:.3})", row.step, row.load_factor);
     let Some(parts) = row.measures.stress else {
-        return format!("{label:<14}no stress: the window is empty\n");
+        return format!("{label:<12}no stress: the window is empty\n");
     };
     let tensors = [parts.shear, parts.variation, parts.fabric];
     let line = |brackets: [&str; 2], pick: fn(Tensor) -> [f64; 2]| {
@@ -147,38 +160,40 @@ fn part_lines(row: &StepRow, scale: Scale) -> String {
     let upper = line(["⎡", "⎤"], |t| [t.xx, t.xy]);
     let lower = line(["⎣", "⎦"], |t| [t.yx, t.yy]);
     let isotropic = scale.apply(parts.isotropic);
-    format!("{label:<14}{upper} {isotropic:>8.3}\n{:14}{lower}\n", "")
+    format!("{label:<12}{upper} {isotropic:>8.3}\n{:12}{lower}\n", "")
 }
 
 /// All rows, or the first and the last with a gap between them.
-fn rows_shown(steps: &[StepRow]) -> Vec<Option<&StepRow>> {
-    if steps.len() <= 2 * SHOWN {
+fn rows_shown(steps: &[StepRow], shown: usize) -> Vec<Option<&StepRow>> {
+    if steps.len() <= 2 * shown {
         return steps.iter().map(Some).collect();
     }
-    let first = steps[..SHOWN].iter().map(Some);
-    let last = steps[steps.len() - SHOWN..].iter().map(Some);
+    let first = steps[..shown].iter().map(Some);
+    let last = steps[steps.len() - shown..].iter().map(Some);
     first.chain([None]).chain(last).collect()
 }
 
 /// The run beside the table it is compared with: the largest difference of each column.
 pub fn compared(comparison: &Comparison) -> String {
-    let mut text = format!(
-        "\nbeside compare.csv, matched by {}\n{:<22}{:>14}{:>14}{:>14}  at {}\n",
-        comparison.matched_by, "column", "run", "compared", "difference", comparison.matched_by
-    );
+    let by = &comparison.matched_by;
+    let mut text =
+        format!("\nbeside compare.csv, matched by {by}: the largest difference of each column\n");
     for note in &comparison.notes {
-        text.push_str(&format!("# {note}\n"));
+        let _ = writeln!(text, "# {note}");
     }
+    let _ = writeln!(
+        text,
+        "{:<24} {:>12} {:>12} {:>12}  at {by}",
+        "column", "run", "compared", "difference"
+    );
     for column in &comparison.columns {
         if let Some(value) = column.largest() {
-            text.push_str(&format!(
-                "{:<22}{:>14.6}{:>14.6}{:>14.6}  {}\n",
-                column.name,
-                value.run,
-                value.compared,
-                value.difference(),
-                value.label
-            ));
+            let difference = value.difference();
+            let _ = writeln!(
+                text,
+                "{:<24} {:>12.6} {:>12.6} {:>12.6}  {}",
+                column.name, value.run, value.compared, difference, value.label
+            );
         }
     }
     text

@@ -1,7 +1,15 @@
 //! The report of a run: one self-contained page, made from the results folder alone.
+//!
+//! In: a results folder. Out: an HTML file without scripts and without network.
 
 mod comparison;
+mod curves;
 mod error;
+mod graph;
+mod number;
+mod page;
+mod plot;
+mod tensor;
 
 use std::path::{Path, PathBuf};
 
@@ -14,9 +22,9 @@ use kavics_results::ResultsFolder;
 /// # Errors
 /// Results that cannot be read; a page that cannot be written.
 pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
-    let _folder = ResultsFolder::open(folder)?;
+    let page = page::page(&ResultsFolder::open(folder)?)?;
     let usual = || folder.join("report.html");
     let path = output.map_or_else(usual, Path::to_owned);
-    kavics_results::publish(&path, b"")?;
+    kavics_results::publish(&path, page.as_bytes())?;
     Ok(path)
 }

@@ -36,12 +36,13 @@ impl Unit {
     }
 }
 
+type ReadValue<R, T> = dyn Fn(&R) -> Option<T>;
 type ReadText<R> = dyn for<'row> Fn(&'row R) -> Option<&'row str>;
 
 /// How a column is read from a row.
 pub(crate) enum Read<R> {
-    Integer(Box<dyn Fn(&R) -> Option<i64>>),
-    Number(Box<dyn Fn(&R) -> Option<f64>>),
+    Integer(Box<ReadValue<R, i64>>),
+    Number(Box<ReadValue<R, f64>>),
     Text(Box<ReadText<R>>),
 }
 
@@ -103,7 +104,7 @@ impl<R> Column<R> {
     pub(crate) fn show(&self, row: &R) -> String {
         match &self.read {
             Read::Integer(read) => read(row).map(|value| value.to_string()),
-            Read::Number(read) => read(row).map(|value| value.to_string()),
+            Read::Number(read) => read(row).map(|value| format!("{value:?}")),
             Read::Text(read) => read(row).map(str::to_owned),
         }
         .unwrap_or_default()

@@ -9,7 +9,7 @@ use crate::column::{Column, Unit};
 
 /// A row of `contacts`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ContactRow {
+pub struct ContactRow<'a> {
     /// Load step.
     pub step: usize,
     /// Id.
@@ -19,20 +19,20 @@ pub struct ContactRow {
     /// The contact now.
     pub state: ContactState,
     /// Name of its property now; empty: broken into nothing.
-    pub property: String,
+    pub property: &'a str,
     /// Name of its law now; empty: broken into nothing.
     pub law: &'static str,
     /// `intact`, `closed`, `sliding`, `open` or `broken`.
     pub status: &'static str,
 }
 
-impl ContactRow {
+impl<'a> ContactRow<'a> {
     pub(crate) fn new(
         step: usize,
         id: usize,
         contact: &Contact,
         state: &ContactState,
-        properties: &PerProperty<Property>,
+        properties: &'a PerProperty<Property>,
     ) -> Self {
         let property = state.property.map(|id| &properties[id]);
         Self {
@@ -40,7 +40,7 @@ impl ContactRow {
             id,
             contact: *contact,
             state: *state,
-            property: property.map(|p| p.name.clone()).unwrap_or_default(),
+            property: property.map_or("", |p| p.name.as_str()),
             law: property.map_or("", |p| p.law.name()),
             status: status(state, property),
         }
@@ -69,7 +69,7 @@ fn partner_number(partner: Partner) -> i64 {
 }
 
 /// The columns of `contacts`, in their order; `x` and `y` are the contact point before loading.
-pub(crate) fn contact_columns() -> Vec<Column<ContactRow>> {
+pub(crate) fn contact_columns<'a>() -> Vec<Column<ContactRow<'a>>> {
     use Unit::{Dimensionless, Force, ForceLength, Length};
     vec![
         Column::integer("step", |r: &ContactRow| r.step as i64),
@@ -99,7 +99,7 @@ pub(crate) fn contact_columns() -> Vec<Column<ContactRow>> {
         Column::number("bending_moment", ForceLength, |r: &ContactRow| {
             r.state.force.moment
         }),
-        Column::text("property", |r: &ContactRow| Some(&r.property)),
+        Column::text("property", |r: &ContactRow| Some(r.property)),
         Column::text("law", |r: &ContactRow| Some(r.law)),
         Column::text("state", |r: &ContactRow| Some(r.status)),
         Column::number("x", Length, |r: &ContactRow| r.contact.point.x),

@@ -211,6 +211,14 @@ impl ResultsFolder {
         Columns::read(&self.path.join("events.parquet"))
     }
 
+    /// The table `actions`.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn actions(&self) -> Result<Columns, ResultsError> {
+        Columns::read(&self.path.join("actions.parquet"))
+    }
+
     /// The table `grains` at a recorded load step.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! Lists of grains: x, y and radius, read from and written to csv or Parquet.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use kavics::assembly::Grain;
@@ -39,7 +40,7 @@ pub fn write_grains(path: &Path, grains: &[Grain]) -> Result<(), ResultsError> {
 pub fn grains_csv(grains: &[Grain]) -> String {
     let mut text = String::from("x,y,radius\n");
     for Grain { centre, radius } in grains {
-        text.push_str(&format!("{},{},{radius}\n", centre.x, centre.y));
+        let _ = writeln!(text, "{:?},{:?},{radius:?}", centre.x, centre.y);
     }
     text
 }

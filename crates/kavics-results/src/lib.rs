@@ -3,6 +3,7 @@
 //! In: a scene and its equilibria with their measures. Out: a folder of tables in which units stand in the field
 //! metadata, and the same tables read back by column name. No mechanics is computed here.
 
+mod actions;
 mod column;
 mod contacts;
 mod encode;
@@ -19,6 +20,7 @@ mod sides;
 mod steps;
 mod warning;
 
+pub use actions::ActionRow;
 pub use column::{Column, Unit};
 pub use contacts::ContactRow;
 pub use encode::publish;

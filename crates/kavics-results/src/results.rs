@@ -11,6 +11,7 @@ use kavics::measure::{Measures, Tensor};
 use kavics::scene::Scene;
 
 use crate::ResultsError;
+use crate::actions::{ActionRow, Actions, action_columns};
 use crate::contacts::{ContactRow, contact_columns};
 use crate::encode::{publish, publish_table};
 use crate::events::{EventRow, event_columns};
@@ -46,6 +47,8 @@ pub struct Results<'a> {
     steps: Vec<StepRow>,
     iterates: Vec<StepRow>,
     events: Vec<EventRow>,
+    actions: Actions,
+    action_rows: Vec<ActionRow>,
     broken: usize,
     held: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
@@ -72,6 +75,8 @@ impl<'a> Results<'a> {
             steps: Vec::new(),
             iterates: Vec::new(),
             events: Vec::new(),
+            actions: Actions::new(&scene.program),
+            action_rows: Vec::new(),
             broken: 0,
             held: held_grains(scene),
             unrecorded: None,
@@ -98,6 +103,8 @@ impl<'a> Results<'a> {
         grain_stress: &PerGrain<Tensor>,
     ) -> Result<(), ResultsError> {
         self.add_events(equilibrium);
+        let actions = self.actions.rows(&self.scene.program, equilibrium);
+        self.action_rows.extend(actions);
         if equilibrium.step > 0 {
             self.steps.push(self.step_row(equilibrium, measures));
         }
@@ -291,7 +298,7 @@ impl<'a> Results<'a> {
         }
     }
 
-    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow> {
+    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow<'a>> {
         let contacts = self.scene.assembly.contacts.iter();
         let properties = &self.scene.properties;
         let step = equilibrium.step;
@@ -323,6 +330,11 @@ impl<'a> Results<'a> {
         let path = |name| self.folder.join(name);
         publish_table(&path("steps.parquet"), &step_columns(), &self.steps)?;
         publish_table(&path("events.parquet"), &event_columns(), &self.events)?;
+        publish_table(
+            &path("actions.parquet"),
+            &action_columns(),
+            &self.action_rows,
+        )?;
         if self.scene.settings.keep_iterates {
             let columns = iterate_columns();
             publish_table(&path("iterations.parquet"), &columns, &self.iterates)?;

@@ -224,3 +224,17 @@ fn an_event_names_its_contact_and_no_grain() {
     assert_eq!(events.integers("grain").unwrap(), [None; 3]);
     assert_eq!(events.texts("mode").unwrap(), ["tension"; 3]);
 }
+
+#[test]
+fn force_and_displacement_of_a_load_are_conjugate() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    block::write(&folder, &scene);
+    let actions = ResultsFolder::open(&folder).unwrap().actions().unwrap();
+    // Five grains carry 60 each; the top row lies at y = 1 + 6√3 and goes down by 0.011·y.
+    assert_eq!(actions.numbers("force").unwrap()[1], 300.0);
+    let expected = 0.011 * (1.0 + 6.0 * 3f64.sqrt());
+    let displacement = actions.numbers("displacement").unwrap()[1];
+    assert!((displacement - expected).abs() < 1e-14, "{displacement}");
+}

@@ -4,12 +4,13 @@
 mod block;
 
 use block::{Block, block, numbers, regular};
-use kavics::assembly::Partner;
+use kavics::assembly::{Contact, Partner};
 use kavics::ids::{ContactId, GrainId};
 use kavics::measure::{
     Measures, StressPartition, SymmetricTensor, Tensor, Window, average_stress, bending_stress,
-    boundary_work, contact_mean_work, contact_work, grain_stress, graph_porosity, macroscopic_work,
-    measures, moment_asymmetry, strain, stress_partition, window_area,
+    boundary_work, branch_tensor, contact_mean_work, contact_tensor, contact_work,
+    fabric_length_tensor, fabric_tensor, grain_stress, graph_porosity, macroscopic_work, measures,
+    moment_asymmetry, strain, stress_partition, window_area,
 };
 use proptest::prelude::*;
 
@@ -185,6 +186,30 @@ proptest! {
             prop_assert!(close(tensor.trace(), 1.0));
             prop_assert!(tensor.eigenvalues()[1] >= -TIGHT);
         }
+    }
+
+    #[test]
+    fn fabric_tensors_weigh_by_one_length_squared_length_and_dual_length((block, window) in blocks()) {
+        let snapshot = block.snapshot();
+        let met = block.met(&window);
+        let expected = |weight: fn(&Contact) -> f64| {
+            let total: f64 = met.iter().map(weight).sum();
+            let square = |c: &Contact| Tensor::product(c.normal, c.normal) * (weight(c) / total);
+            met.iter().map(square).fold(Tensor::default(), plus)
+        };
+        let found = [
+            (fabric_tensor(&snapshot, &window), expected(|_| 1.0)),
+            (fabric_length_tensor(&snapshot, &window), expected(|c| c.branch_length.powi(2))),
+            (branch_tensor(&snapshot, &window), expected(|c| c.branch_length)),
+            (contact_tensor(&snapshot, &window), expected(|c| c.dual_length_full)),
+        ];
+        for (tensor, expected) in found {
+            prop_assert_eq!(tensor.is_none(), met.is_empty());
+            prop_assert!(same(tensor.map(full).unwrap_or_default(), expected));
+        }
+        let all = measures(&snapshot, &window);
+        let fused = [all.fabric, all.fabric_length, all.branch, all.contact];
+        prop_assert_eq!(fused, found.map(|(tensor, _)| tensor));
     }
 
     #[test]

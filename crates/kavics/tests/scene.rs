@@ -266,7 +266,7 @@ fn an_edge_load_says_what_it_does_not_meet() {
     let total: f64 = scene.program.loads.iter().map(|l| l.load.y).sum();
     assert!((total + 4.0).abs() < 1e-12);
     assert!(
-        scene.warnings[0].contains("over 2.000000 of the 6.000000"),
+        scene.warnings[0].contains("over 2 of the 6"),
         "{:?}",
         scene.warnings
     );

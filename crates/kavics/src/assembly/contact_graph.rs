@@ -89,7 +89,7 @@ const LIKELY: f64 = 1e-3;
 /// Two grains touch where their gap is at most `touching_tolerance`, and touching grains always have a site. A grain
 /// is joined to a present side where its gap is at most `reach` of that side or the tolerance, and its power cell has
 /// an edge on the side. All sides bound the power diagram, present or not. Lengths in `[length]`.
-/// Bojtár & Bagi (1989), figs. 2–3; the dual graph as power diagram after Gellatly & Finney (1982).
+/// Bojtár & Bagi (1989): the common tangents are the dual graph; as power diagram after Gellatly & Finney (1982).
 pub fn contact_graph(
     grains: &PerGrain<Grain>,
     sides: &PerSide<Side>,

@@ -24,7 +24,7 @@ impl Cemented {
         let thrust_by_shear = if shear.thrust == 0.0 {
             0.0
         } else {
-            shear.by_normal
+            shear.coupling
         };
         Response {
             force: ContactForce {
@@ -34,7 +34,7 @@ impl Cemented {
             },
             tangent: [
                 [k.normal, thrust_by_shear, k.coupling],
-                [shear.by_normal, shear.by_shear, 0.0],
+                [shear.coupling, shear.tangent, 0.0],
                 [k.coupling, 0.0, k.moment],
             ],
             secant: [

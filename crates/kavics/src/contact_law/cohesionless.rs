@@ -33,7 +33,7 @@ impl Cohesionless {
         let thrust_by_shear = if shear.thrust == 0.0 {
             0.0
         } else {
-            shear.by_normal
+            shear.coupling
         };
         let secant = [[k.normal, 0.0, 0.0], [0.0, shear.secant, 0.0], [0.0; 3]];
         let Some((sense, friction)) = sense(phase).zip(self.friction) else {
@@ -45,7 +45,7 @@ impl Cohesionless {
                 },
                 tangent: [
                     [k.normal, thrust_by_shear, 0.0],
-                    [shear.by_normal, shear.by_shear, 0.0],
+                    [shear.coupling, shear.tangent, 0.0],
                     [0.0; 3],
                 ],
                 secant,
@@ -79,7 +79,7 @@ impl Cohesionless {
     ) -> Option<PhaseChange> {
         let change = |to, violation| (violation > 0.0).then_some(PhaseChange { to, violation });
         if phase == Phase::Open {
-            return change(Phase::Closed, -k.normal * v.normal);
+            return change(self.closing_phase(v, k, memory), -k.normal * v.normal);
         }
         if force.normal > 0.0 {
             return change(Phase::Open, force.normal);
@@ -95,14 +95,29 @@ impl Cohesionless {
                 change(to, force.shear.abs() + friction * force.normal)
             }
             Some(sense) => {
-                let slipped = self.slip(v, force, k, memory, phase) - self.slip_before(memory, k);
+                let slipped = self.slip(v, force, k, memory, phase) - Self::slip_before(memory, k);
                 change(Phase::Closed, -sense * slipped * k.shear_at(v.normal))
             }
         }
     }
 
+    /// The phase in which an open contact closes at `v`: it slides where the shear spring would exceed the limit.
+    fn closing_phase(
+        &self,
+        v: RelativeDisplacement,
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Phase {
+        let shear = shear::respond(self.reading, v, k, memory).force;
+        match self.friction {
+            Some(friction) if shear > -friction * k.normal * v.normal => Phase::SlidingForward,
+            Some(friction) if -shear > -friction * k.normal * v.normal => Phase::SlidingBackward,
+            _ => Phase::Closed,
+        }
+    }
+
     /// The slip in which the remembered shear force is that of the shear spring.
-    fn slip_before(&self, memory: &ContactMemory, k: &Stiffness) -> f64 {
+    fn slip_before(memory: &ContactMemory, k: &Stiffness) -> f64 {
         if memory.phase == Phase::Open {
             return memory.slip;
         }

@@ -28,7 +28,7 @@ pub struct RelativeDisplacement {
     pub rotation: f64,
 }
 
-/// Force that a contact carries, per thickness of the assembly.
+/// Force that a contact carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce {
     /// Normal force N, tension positive, `[force]`.

@@ -12,9 +12,9 @@ pub(super) struct Shear {
     /// T.
     pub force: f64,
     /// ∂T/∂v_n.
-    pub by_normal: f64,
+    pub coupling: f64,
     /// ∂T/∂v_t.
-    pub by_shear: f64,
+    pub tangent: f64,
     /// What shear adds to the normal force.
     pub thrust: f64,
     /// k_t for the secant.
@@ -47,8 +47,8 @@ fn total(v: RelativeDisplacement, k: &Stiffness, memory: &ContactMemory) -> Shea
     let stiffness = k.shear_at(v.normal);
     Shear {
         force: stiffness * felt,
-        by_normal: k.shear_slope(v.normal) * felt,
-        by_shear: stiffness,
+        coupling: k.shear_slope(v.normal) * felt,
+        tangent: stiffness,
         thrust: 0.0,
         secant: stiffness,
     }
@@ -62,8 +62,8 @@ fn history(v: RelativeDisplacement, k: &Stiffness, memory: &ContactMemory) -> Sh
         let mean = 0.5 * (before + now);
         Shear {
             force: memory.force.shear + mean * step,
-            by_normal: 0.5 * slope * step,
-            by_shear: mean,
+            coupling: 0.5 * slope * step,
+            tangent: mean,
             thrust: 0.0,
             secant: now,
         }
@@ -71,8 +71,8 @@ fn history(v: RelativeDisplacement, k: &Stiffness, memory: &ContactMemory) -> Sh
         let felt = memory.force.shear / before + step;
         Shear {
             force: now * felt,
-            by_normal: slope * felt,
-            by_shear: now,
+            coupling: slope * felt,
+            tangent: now,
             thrust: 0.0,
             secant: now,
         }

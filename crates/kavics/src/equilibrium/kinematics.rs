@@ -91,6 +91,36 @@ impl Load {
     }
 }
 
+impl Displacement {
+    /// The largest component as a length: rotations times `arm`, `[length]`.
+    pub fn largest_length(self, arm: f64) -> f64 {
+        self.x.hypot(self.y).max(self.rotation.abs() * arm)
+    }
+}
+
+impl Load {
+    /// Every component without its sign.
+    #[must_use]
+    pub fn magnitude(self) -> Self {
+        Self {
+            x: self.x.abs(),
+            y: self.y.abs(),
+            moment: self.moment.abs(),
+        }
+    }
+}
+
+impl std::ops::Mul<f64> for Load {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            x: self.x * factor,
+            y: self.y * factor,
+            moment: self.moment * factor,
+        }
+    }
+}
+
 impl std::ops::AddAssign for Load {
     fn add_assign(&mut self, other: Self) {
         self.x += other.x;

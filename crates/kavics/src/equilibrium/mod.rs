@@ -2,14 +2,17 @@
 //!
 //! In: an assembly, contact states, loads and prescribed displacements. Out: displacements and contact forces.
 
-pub(crate) mod balance;
+mod balance;
 pub(crate) mod bond;
+pub(crate) mod configuration;
 mod direct;
 mod error;
 mod kinematics;
+mod linear;
 mod pieces;
 mod search;
 mod sparsity;
+pub(crate) mod system;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS};

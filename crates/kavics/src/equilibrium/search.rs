@@ -7,9 +7,11 @@ use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
-use super::balance::{Action, Configuration, Failure, Progress, Settled, System};
+use super::balance::Settled;
+use super::configuration::{Action, Configuration, Failure, Progress};
+use super::system::System;
 use crate::contact_law::{Phase, PhaseChange};
-use crate::ids::{ContactId, Id};
+use crate::ids::{ContactId, GrainId, Id};
 
 /// Violations this near to each other change together.
 const PHASE_TIES: f64 = 1e-6;
@@ -130,7 +132,7 @@ impl System<'_> {
             .iter()
             .take(10)
             .filter(|s| s.0 > 0.1 * most)
-            .map(|s| crate::ids::GrainId(s.1))
+            .map(|s| GrainId(s.1))
             .collect();
         Failure::Mechanism { grains }
     }

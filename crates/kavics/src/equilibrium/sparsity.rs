@@ -135,7 +135,7 @@ impl Sparsity {
             for (row_rank, (row, _)) in free(numbers).enumerate() {
                 match self.stored {
                     Stored::Full => {
-                        values[start + self.own[body] as usize + row_rank] += block[row][column]
+                        values[start + self.own[body] as usize + row_rank] += block[row][column];
                     }
                     Stored::Lower if row_rank >= column_rank => {
                         values[start + row_rank - column_rank] += block[row][column];

@@ -24,7 +24,7 @@ impl HalfPlane {
 #[derive(Clone, Debug)]
 pub struct Container {
     /// The sides as they were given.
-    pub sides: Vec<HalfPlane>,
+    pub(super) sides: Vec<HalfPlane>,
     /// Their numbers, counter-clockwise.
     pub(super) around: Vec<u32>,
     /// The corner where each side of `around` starts.

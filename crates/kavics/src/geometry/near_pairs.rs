@@ -137,49 +137,72 @@ impl Grid {
 
     /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap.
     pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
-        let tasks: Vec<Vec<NearPair>> = self
-            .discs
-            .par_chunks(DISCS_A_TASK)
-            .map(|discs| {
+        let mut tasks: Vec<Vec<NearPair>> = Vec::new();
+        for (finest, level) in self.levels.iter().enumerate() {
+            let of_chunk = |discs: &[Disc]| {
                 let mut pairs = Vec::new();
                 for disc in discs {
-                    self.near_pairs_of(disc, reach, &mut pairs);
+                    self.near_pairs_of(disc, finest, reach, &mut pairs);
                 }
                 pairs
-            })
-            .collect();
-        tasks.concat()
+            };
+            let chunks = level.discs.par_chunks(DISCS_A_TASK).map(of_chunk);
+            tasks.extend(chunks.collect::<Vec<_>>());
+        }
+        sorted(&tasks, self.discs.len())
     }
 
-    /// The pairs of a disc with discs of higher numbers.
-    fn near_pairs_of(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
-        let before = pairs.len();
-        for level in &self.levels {
+    /// The pairs of a disc with larger discs, and with those of higher numbers in its own level.
+    fn near_pairs_of(&self, disc: &Disc, finest: usize, reach: f64, pairs: &mut Vec<NearPair>) {
+        for (k, level) in self.levels.iter().enumerate().skip(finest) {
             let distance = (disc.radius + level.largest_radius + reach).max(0.0);
             for row in level.around(disc.centre, distance * (1.0 + 1e-9)) {
                 for other in row {
-                    if other.index <= disc.index {
-                        continue;
-                    }
-                    let squared = (other.centre - disc.centre).length_squared();
-                    let radii = disc.radius + other.radius;
-                    let bound = radii + reach;
-                    if squared > bound * bound * (1.0 + 1e-9) {
-                        continue;
-                    }
-                    let gap = squared.sqrt() - radii;
-                    if gap <= reach {
-                        pairs.push(NearPair {
-                            first: disc.index,
-                            second: other.index,
-                            gap,
-                        });
+                    if k > finest || other.index > disc.index {
+                        pairs.extend(near_pair(disc, other, reach));
                     }
                 }
             }
         }
-        pairs[before..].sort_unstable_by_key(|p| p.second);
     }
+}
+
+/// The pair of two discs, if their gap is at most `reach`.
+fn near_pair(disc: &Disc, other: &Disc, reach: f64) -> Option<NearPair> {
+    let squared = (other.centre - disc.centre).length_squared();
+    let radii = disc.radius + other.radius;
+    let bound = radii + reach;
+    if squared > bound * bound * (1.0 + 1e-9) {
+        return None;
+    }
+    let gap = squared.sqrt() - radii;
+    (gap <= reach).then(|| NearPair {
+        first: disc.index.min(other.index),
+        second: disc.index.max(other.index),
+        gap,
+    })
+}
+
+/// The pairs by (first, second): counting sort by the first, then each disc's own.
+fn sorted(tasks: &[Vec<NearPair>], discs: usize) -> Vec<NearPair> {
+    let mut start = vec![0_u32; discs + 1];
+    for pair in tasks.iter().flatten() {
+        start[pair.first as usize + 1] += 1;
+    }
+    for i in 0..discs {
+        start[i + 1] += start[i];
+    }
+    let mut next = start.clone();
+    let mut pairs = tasks.concat();
+    for pair in tasks.iter().flatten() {
+        let place = &mut next[pair.first as usize];
+        pairs[*place as usize] = *pair;
+        *place += 1;
+    }
+    for range in start.windows(2) {
+        pairs[range[0] as usize..range[1] as usize].sort_unstable_by_key(|p| p.second);
+    }
+    pairs
 }
 
 /// The binary exponent of a radius.

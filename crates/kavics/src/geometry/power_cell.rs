@@ -47,7 +47,7 @@ impl Line {
 
     /// Whether the line leaves all points alone whose squared distance is at most `squared`.
     pub(super) fn is_beyond(&self, squared: f64) -> bool {
-        self.c > 0.0 && self.c * self.c > squared * self.d.length_squared() * (1.0 + 1e-9)
+        self.c > 0.0 && self.c * self.c > squared * self.d.length_squared() * (1.0 + 1e-6)
     }
 
     fn is_disc(&self) -> bool {
@@ -126,7 +126,7 @@ impl Cell {
     /// Replaces the outside vertices by an edge on `line`.
     fn splice(&mut self, line: &Line) {
         let n = self.edges.len();
-        let outside = |m: usize| self.excess[m % n].1;
+        let outside = |m: usize| self.excess[wrapped(m, n)].1;
         let Some(seed) = (0..n).filter(|&m| outside(m)).max_by(|&a, &b| {
             let (a, b) = (self.excess[a].0, self.excess[b].0);
             a.total_cmp(&b)
@@ -138,8 +138,8 @@ impl Cell {
             return;
         };
         let inside_before = (1..n).find(|&k| !outside(seed + n - k)).unwrap_or(1);
-        let last_outside = (seed + inside_after - 1) % n;
-        let last_inside = (seed + n - inside_before) % n;
+        let last_outside = wrapped(seed + inside_after - 1, n);
+        let last_inside = wrapped(seed + n - inside_before, n);
         let kept = (n + 1) - (inside_before + inside_after - 1);
         let enter = self.crossing(last_inside, line, true);
         let leave = self.crossing(last_outside, line, false);
@@ -147,7 +147,7 @@ impl Cell {
         self.next.push(enter);
         self.next.push(leave);
         for k in 1..kept {
-            self.next.push(self.edges[(last_outside + k) % n]);
+            self.next.push(self.edges[wrapped(last_outside + k, n)]);
         }
         std::mem::swap(&mut self.edges, &mut self.next);
         self.find_farthest();
@@ -180,7 +180,7 @@ impl Cell {
     /// The point of edge m where the line that is cut with crosses, from the excess at the ends.
     fn between_ends(&self, m: usize) -> Vector {
         let n = self.edges.len();
-        let (from, to) = (self.excess[m].0, self.excess[(m + 1) % n].0);
+        let (from, to) = (self.excess[m].0, self.excess[wrapped(m + 1, n)].0);
         let share = from / (from - to);
         let share = if share.is_finite() {
             share.clamp(0.0, 1.0)
@@ -193,7 +193,7 @@ impl Cell {
 
     /// Where edge m ends.
     pub(super) fn end(&self, m: usize) -> Vector {
-        self.edges[(m + 1) % self.edges.len()].start
+        self.edges[wrapped(m + 1, self.edges.len())].start
     }
 
     fn find_farthest(&mut self) {
@@ -233,9 +233,14 @@ impl Cell {
     pub(super) fn radical_centres(&self) -> impl Iterator<Item = (u32, u32, Vector)> {
         let n = self.edges.len();
         (0..n).filter_map(move |m| {
-            let (a, b) = (&self.edges[(m + n - 1) % n].line, &self.edges[m].line);
+            let (a, b) = (&self.edges[wrapped(m + n - 1, n)].line, &self.edges[m].line);
             let both = a.is_disc() && b.is_disc();
             both.then_some((a.tag, b.tag, self.edges[m].start))
         })
     }
+}
+
+/// `m` < 2n, back in 0..n.
+fn wrapped(m: usize, n: usize) -> usize {
+    if m < n { m } else { m - n }
 }

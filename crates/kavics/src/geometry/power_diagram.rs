@@ -143,7 +143,7 @@ impl<'a> Clipping<'a> {
                 let farthest = cell.farthest_squared;
                 let reach = farthest.sqrt() + (farthest + grown).max(0.0).sqrt();
                 let reach = reach * (1.0 + 1e-6);
-                if cell.edges.is_empty() || !(reach > done) {
+                if cell.edges.is_empty() || reach <= done || reach.is_nan() {
                     break;
                 }
                 let step = if done == 0.0 {

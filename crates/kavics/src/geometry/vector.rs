@@ -28,6 +28,7 @@ impl Vector {
     }
 
     /// This vector turned by a quarter turn, counter-clockwise.
+    #[must_use]
     pub fn quarter_turn(self) -> Self {
         Self::new(-self.y, self.x)
     }

@@ -3,8 +3,9 @@
 use super::ledger::{self, Forces};
 use super::{Breakage, Program};
 use crate::contact_law::{Mode, Phase};
-use crate::equilibrium::balance::{Action, Configuration, Failure, Progress, System};
 use crate::equilibrium::bond::Bond;
+use crate::equilibrium::configuration::{Action, Configuration, Failure, Progress};
+use crate::equilibrium::system::System;
 use crate::equilibrium::{
     ALL_FREEDOMS, Displacement, Energy, Event, EventKind, Freedom, Load, Warning,
 };
@@ -50,12 +51,7 @@ pub fn action(program: &Program, factors: &[f64], bodies: usize) -> Action {
     for applied in &program.loads {
         let factor = factors[applied.action];
         if factor != 0.0 {
-            let load = applied.load;
-            loads[applied.body] += Load {
-                x: load.x * factor,
-                y: load.y * factor,
-                moment: load.moment * factor,
-            };
+            loads[applied.body] += applied.load * factor;
         }
     }
     let moved = program
@@ -337,12 +333,7 @@ pub fn undeformed(system: &mut System<'_>, program: &Program) -> Point {
     // A piece is loose if nothing will ever load it.
     let mut ever = none.clone();
     for applied in &program.loads {
-        let load = applied.load;
-        ever[applied.body] += Load {
-            x: load.x.abs(),
-            y: load.y.abs(),
-            moment: load.moment.abs(),
-        };
+        ever[applied.body] += applied.load.magnitude();
     }
     system.leave_out_loose_pieces(&configuration.bonds, &ever);
     let grains = assembly.grains.len();

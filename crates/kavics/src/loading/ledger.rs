@@ -1,8 +1,8 @@
 //! Work and energy between two equilibria. No term is a remainder of the others.
 
 use crate::contact_law::{Dissipation, Property};
-use crate::equilibrium::balance::Configuration;
 use crate::equilibrium::bond::Bond;
+use crate::equilibrium::configuration::Configuration;
 use crate::equilibrium::{Energy, Load};
 use crate::ids::{PerBody, PerProperty};
 

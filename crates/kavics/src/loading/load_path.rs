@@ -6,7 +6,8 @@ use super::advance::{self, Point, Way};
 use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
-use crate::equilibrium::balance::{Failure, System};
+use crate::equilibrium::configuration::Failure;
+use crate::equilibrium::system::System;
 use crate::equilibrium::{Equilibrium, Settings, SolveError};
 use crate::ids::PerProperty;
 

@@ -10,8 +10,8 @@
 //!   u = a·d_u − b·d_v, v = a·d_v + b·d_u with a = (1 + (ρ² − ρ_j²)/d²)/2 and b = √(ρ²/d² − a²).
 //!
 //! At a side or on the floor it rests. Between two grains it rests where its centre lies between theirs; otherwise it
-//! rolls on over j. Where it leaves k, it falls again. Its centre only sinks, so it comes to rest. Rain model of
-//! Visscher & Bolsterli (1972) and Jullien & Meakin (1987, with rolling on to a local minimum), in two dimensions.
+//! rolls on over j. Where it leaves k, it falls again. Its centre only sinks, so it comes to rest. This is the second
+//! model of Meakin & Jullien (1987): rolling on until a local minimum is reached.
 
 use crate::assembly::Grain;
 use crate::geometry::Vector;

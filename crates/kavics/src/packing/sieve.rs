@@ -74,11 +74,13 @@ pub enum Sizes {
 impl Sizes {
     /// `count` radii in random order.
     ///
-    /// Uniform radii are the middles of `count` equal parts of the range. After a sieve curve, the grains of each class
-    /// are as many as fit its share of the mass best; then their diameters are moved within the class, keeping their
-    /// order, until the mass is right to rounding at the class limits. That needs enough grains: if the limits are not
-    /// met, the share that passes is off by at most about one grain of the class next to them. Between the limits
-    /// the curve is off by about one half of the heaviest grain near, as any curve with steps must be.
+    /// Uniform radii are the middles of `count` equal parts of the range. After a sieve curve, each class from the
+    /// coarsest on gets as many grains as fit best what it and the coarser ones should weigh; then their diameters are
+    /// moved within the class, keeping their order, until that mass is met to rounding. Where no diameters of the class
+    /// meet it (few grains, or sieves close together), the share that passes the lower sieve is off by at most half a
+    /// grain of that class or a coarser one, and the next finer class makes up for it. Between the sieves the share
+    /// is off by about half of the heaviest grain near, as steps must be, and by more in a class whose limits differ
+    /// by a few per cent and whose grains are heavy.
     ///
     /// # Errors
     /// No grains, a range or a curve that is none.
@@ -162,9 +164,7 @@ impl SieveCurve {
     /// Radii of `count` grains, from the coarsest class to the finest.
     fn radii(&self, count: usize) -> Vec<f64> {
         let classes = self.classes();
-        let counts = apportion(&classes, count);
-        let mean = |(class, &count): (&Class, &usize)| count as f64 * class.mean_mass;
-        let total: f64 = classes.iter().zip(&counts).map(mean).sum();
+        let (total, counts) = apportion(&classes, count);
         let mut radii = Vec::with_capacity(count);
         // What a class has too little of, the next finer one gets more of.
         let mut missing = 0.0;
@@ -214,10 +214,18 @@ impl Class {
         }
     }
 
-    /// Mass of the grain that is coarser than a share u of the class.
+    /// Mass of the grain that is coarser than a share u of the class, a little off the limits where classes meet.
     fn mass_at(&self, u: f64) -> f64 {
         let [fine, coarse] = self.inverse_masses;
-        1.0 / (fine - u * (fine - coarse))
+        let inner = OFF_LIMITS + (1.0 - 2.0 * OFF_LIMITS) * u;
+        1.0 / (fine - inner * (fine - coarse))
+    }
+
+    /// How many grains of the class weigh `wanted` best, and what they can weigh that is nearest to it.
+    fn share_out(&self, wanted: f64) -> (usize, f64) {
+        let count = (wanted / self.mean_mass).round().max(0.0);
+        let (least, most) = (count * self.mass_at(0.0), count * self.mass_at(1.0));
+        (count as usize, wanted.clamp(least, most))
     }
 
     /// Masses of `count` grains whose sum is `wanted`, or as near to it as the class allows.
@@ -233,8 +241,7 @@ impl Class {
             let masses = (0..count).map(|i| self.mass_at(bent(i, count, bend)));
             masses.sum::<f64>() - wanted
         };
-        // Grains stay off the limits, where two classes meet.
-        let (mut low, mut high) = (1e-3, 1.0 - 1e-3);
+        let (mut low, mut high) = (0.0, 1.0);
         let (mut below, mut above) = (surplus(low), surplus(high));
         if below >= 0.0 {
             return low;
@@ -259,6 +266,9 @@ impl Class {
     }
 }
 
+/// Share of a class by number at either limit that holds no grains.
+const OFF_LIMITS: f64 = 1e-9;
+
 /// Middle u of the stratum `i` of `count`, moved towards 1 by s > ½ and towards 0 by s < ½: s·u/(s·u + (1 − s)(1 − u)).
 fn bent(i: usize, count: usize, bend: f64) -> f64 {
     let u = (i as f64 + 0.5) / count as f64;
@@ -266,22 +276,46 @@ fn bent(i: usize, count: usize, bend: f64) -> f64 {
     coarse / (coarse + fine)
 }
 
-/// Shares `count` grains out to the classes: the whole part of each quota, then the grains left by largest remainder.
-fn apportion(classes: &[Class], count: usize) -> Vec<usize> {
-    let weights: Vec<f64> = classes.iter().map(|c| c.share / c.mean_mass).collect();
-    let sum: f64 = weights.iter().sum();
-    let quotas: Vec<f64> = weights.iter().map(|w| count as f64 * w / sum).collect();
-    let mut counts: Vec<usize> = quotas.iter().map(|&quota| quota as usize).collect();
-    let mut order: Vec<usize> = (0..classes.len()).collect();
-    order.sort_by(|&a, &b| {
-        let remainder = |class: usize| quotas[class] - counts[class] as f64;
-        remainder(b).total_cmp(&remainder(a))
-    });
-    let left = count.saturating_sub(counts.iter().sum());
-    for &class in order.iter().cycle().take(left) {
-        counts[class] += 1;
+/// The mass of all grains and how many each class gets, so that they are `count`.
+///
+/// The number of grains grows by one at a time as the mass grows, except where a class takes one grain more and the
+/// finer ones many less; halving therefore ends at a mass with `count` grains.
+fn apportion(classes: &[Class], count: usize) -> (f64, Vec<usize>) {
+    let (mut low, mut high) = (0.0, classes[0].mean_mass);
+    while share_out(classes, high).iter().sum::<usize>() <= count {
+        (low, high) = (high, 2.0 * high);
     }
-    counts
+    let mut counts = share_out(classes, low);
+    while counts.iter().sum::<usize>() != count {
+        let total = 0.5 * (low + high);
+        if total <= low || total >= high {
+            break;
+        }
+        let more = share_out(classes, total);
+        if more.iter().sum::<usize>() > count {
+            high = total;
+        } else {
+            (low, counts) = (total, more);
+        }
+    }
+    // Only if two classes change at the same mass.
+    let placed: usize = counts.iter().sum();
+    if let Some(finest) = counts.last_mut() {
+        *finest += count - placed;
+    }
+    (low, counts)
+}
+
+/// Grains of each class if all together weigh `total`, each making up for what the coarser ones cannot hold.
+fn share_out(classes: &[Class], total: f64) -> Vec<usize> {
+    let mut missing = 0.0;
+    let grains = classes.iter().map(|class| {
+        missing += total * class.share;
+        let (count, held) = class.share_out(missing);
+        missing -= held;
+        count
+    });
+    grains.collect()
 }
 
 #[cfg(test)]
@@ -342,6 +376,22 @@ mod tests {
         let narrow = curve(&[1.0, 1.01, 1.3, 1.31], &[0.0, 0.2, 0.2, 1.0], Mass::Disc);
         for count in [100, 345, 1000, 100_000] {
             assert!(deviation(&narrow, count, 1).0 < 5.0 / count as f64);
+        }
+    }
+
+    #[test]
+    fn with_few_grains_a_curve_is_off_by_half_a_grain_of_the_coarsest_class() {
+        let diameter = [0.1, 0.101, 0.3, 0.303, 1.0, 1.01, 3.0, 3.03];
+        let gaps = curve(
+            &diameter,
+            &[0.0, 0.1, 0.1, 0.4, 0.4, 0.6, 0.6, 1.0],
+            Mass::Disc,
+        );
+        for count in [10, 30, 100, 300, 1000] {
+            let radii = Sizes::Sieve(gaps.clone()).radii(count, 1).unwrap();
+            let total: f64 = radii.iter().map(|r| 4.0 * r * r).sum();
+            // No grain weighs more than 3.03².
+            assert!(deviation(&gaps, count, 1).0 < 0.5 * 3.03 * 3.03 / total);
         }
     }
 

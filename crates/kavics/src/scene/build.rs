@@ -17,7 +17,7 @@ use super::file::SceneFile;
 use super::rigid_motion;
 use super::unit::Dimension;
 use super::{ReadGrains, Scene};
-use crate::assembly::{Assembly, Partner};
+use crate::assembly::{Assembly, Contact, Partner};
 use crate::contact_law::Property;
 use crate::ids::{GrainId, Id, PerGrain};
 use crate::loading::{Action, Program, Stage};
@@ -223,7 +223,7 @@ fn undisturbed(assembly: &Assembly, program: &Program) -> Vec<GrainId> {
         .values()
         .iter()
         .filter(|c| c.touches_side());
-    for grain in grains.chain(at_sides.flat_map(|contact| contact.grains())) {
+    for grain in grains.chain(at_sides.flat_map(Contact::grains)) {
         disturbed.values_mut()[grain.index()] = true;
     }
     let disturbed = &disturbed;

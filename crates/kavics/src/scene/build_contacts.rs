@@ -3,9 +3,9 @@
 use super::build_grains::PlacedGrains;
 use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
 use super::checker::Checker;
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, short};
 use crate::assembly::{self, Assembly, Contact, ContactGraph, Partner, Side, Site};
-use crate::contact_law::{Cemented, Law, StiffnessRule, StrengthKind};
+use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
 use crate::ids::{Id, PerContact, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
 
@@ -40,7 +40,9 @@ pub fn assembly(
         triangles: graph.triangles,
         thickness,
     };
-    tension_limits(plan, &assembly, checker);
+    if dual_lengths(plan, &assembly, checker) {
+        tension_limits(plan, &assembly, checker);
+    }
     Some(assembly)
 }
 
@@ -65,20 +67,20 @@ fn sides_touch(
             .iter()
             .map(|grain| side.distance(grain.centre) - grain.radius)
             .fold(f64::INFINITY, f64::min);
-        let nearest = gap / placed.mean_radius;
+        let nearest = short(gap / placed.mean_radius);
         match &side_plan.reach_span {
             Some(span) if side_plan.reach > 0.0 => checker.push(
                 Problem::at(
                     span,
                     format!("the {} side reaches no grain", side.name),
                     format!(
-                        "expected at least {nearest:.6}, the gap to the nearest grain in mean radii"
+                        "expected at least {nearest}, the gap to the nearest grain in mean radii"
                     ),
                 )
                 .and(&side_plan.span, "this side"),
             ),
             _ => checker.warn(format!(
-                "no grain touches the {} side; the nearest is {nearest:.6} mean radii away",
+                "no grain touches the {} side; the nearest is {nearest} mean radii away",
                 side.name
             )),
         }
@@ -170,7 +172,13 @@ fn zone_expectation(graph: &ContactGraph) -> String {
         return "there is no contact between grains".to_owned();
     }
     let ([left, right], [low, high]) = (span(|p| p.x), span(|p| p.y));
-    format!("contact points lie at x from {left:.6} to {right:.6}, y from {low:.6} to {high:.6}")
+    format!(
+        "contact points lie at x from {} to {}, y from {} to {}",
+        short(left),
+        short(right),
+        short(low),
+        short(high)
+    )
 }
 
 fn without_property(
@@ -193,10 +201,10 @@ fn without_property(
         Problem::at(
             span,
             format!(
-                "{count} {verb} no property; the first is between {} at ({:.6}, {:.6})",
+                "{count} {verb} no property; the first is between {} at ({}, {})",
                 partners(site.first, site.second),
-                point.x,
-                point.y
+                short(point.x),
+                short(point.y)
             ),
             "expected a zone for every contact",
         )
@@ -237,6 +245,35 @@ fn contacts(
         .collect()
 }
 
+/// A contact whose stiffness comes from its dual length must have one.
+fn dual_lengths(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checker) -> bool {
+    let is_direct = |id: PropertyId| {
+        let (Law::Cemented(Cemented { stiffness, .. })
+        | Law::Cohesionless(Cohesionless { stiffness, .. })) = &plan.properties[id].property.law;
+        matches!(stiffness, StiffnessRule::Direct { .. })
+    };
+    let without = assembly
+        .contacts
+        .iter()
+        .find(|(_, contact)| contact.dual_length() <= 0.0 && !is_direct(contact.property));
+    if let Some((id, contact)) = without {
+        let property = &plan.properties[contact.property];
+        checker.push(
+            Problem::at(
+                &property.span,
+                format!(
+                    "contact {id} of property `{}`, between {}, has no dual length",
+                    property.property.name,
+                    partners(contact.first, contact.second)
+                ),
+                format!("its dual length is {}", short(contact.dual_length())),
+            )
+            .help("expected `dual_length = \"full\"` or a number for grains that do not touch"),
+        );
+    }
+    without.is_none()
+}
+
 /// A bond must break before its shear modulus is lost: k_t0 − μ·(k_n/s)·v > 0 at the opening v = Q_lim/k_n.
 fn tension_limits(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checker) {
     for (id, property) in plan.properties.iter() {
@@ -265,8 +302,8 @@ fn tension_limits(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checke
                         partners(contact.first, contact.second)
                     ),
                     format!(
-                        "expected less than {:.6}, at which its shear modulus is zero",
-                        largest_tension(law, contact, assembly.thickness)
+                        "expected less than {}, at which its shear modulus is zero",
+                        short(largest_tension(law, contact, assembly.thickness))
                     ),
                 )
                 .help("lower the limit of tension or `shear_hardening`, or give a `shear_floor`"),

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::ReadGrains;
 use super::check_grains::{DroppedPlan, GrainSource, GrainsPlan, SizesPlan};
 use super::checker::Checker;
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, short};
 use super::value::Placed;
 use crate::assembly::{self, Grain, Side};
 use crate::geometry::Vector;
@@ -197,13 +197,13 @@ fn overlaps(
     let told = pairs
         .iter()
         .take(TOLD)
-        .map(|(first, second, depth)| format!("{first} and {second} by {depth:.6}"))
+        .map(|(first, second, depth)| format!("{first} and {second} by {}", short(*depth)))
         .collect();
     checker.push(
         Problem::at(
             &plan.span,
             format!("grains overlap: {}", list(told, pairs.len())),
-            format!("expected no overlap above {tolerance:e}"),
+            format!("expected no overlap above {}", short(tolerance)),
         )
         .help("`contacts.touching_tolerance` is the overlap allowed, in mean radii"),
     );
@@ -235,8 +235,9 @@ fn outside(
         .take(TOLD)
         .map(|(grain, side, depth)| {
             format!(
-                "grain {grain} beyond the {} side by {depth:.6}",
-                sides[*side].name
+                "grain {grain} beyond the {} side by {}",
+                sides[*side].name,
+                short(*depth)
             )
         })
         .collect();

@@ -10,7 +10,7 @@ use super::check_loading::{
 };
 use super::checker::Checker;
 use super::choose::choose;
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, short};
 use super::edge_load::edge_loads;
 use crate::assembly::{Assembly, Grain, Partner, envelope};
 use crate::equilibrium::{Freedom, Load};
@@ -271,9 +271,10 @@ impl Loading<'_> {
                     ));
                 } else if uncovered > 1e-9 * side.length() {
                     checker.warn(format!(
-                        "load `{}`: no grain is met over {uncovered:.6} of the {:.6} of the {} edge; nothing acts there",
+                        "load `{}`: no grain is met over {} of the {} of the {} edge; nothing acts there",
                         load.name.value,
-                        side.length(),
+                        short(uncovered),
+                        short(side.length()),
                         side.name
                     ));
                 }

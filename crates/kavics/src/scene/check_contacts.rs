@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::check_property::{self, PropertyPlan};
 use super::checker::{Bound, Checker};
 use super::diagnostic::{Problem, either, likely};
-use super::file::{RangesFile, SceneFile, SideFile, ZoneFile};
+use super::file::SceneFile;
+use super::file_contacts::{RangesFile, SideFile, ZoneFile};
 use super::unit::Dimension;
 use super::value::{Number, Placed};
 use crate::assembly::Between;
@@ -255,6 +256,7 @@ fn sides(file: &SceneFile, names: &[&str], checker: &mut Checker) -> Option<[Opt
     let Some(sides) = &file.side else {
         return Some([None, None, None, None]);
     };
+    let sides = &sides.value;
     let tables = [&sides.left, &sides.right, &sides.bottom, &sides.top];
     let plans = tables.map(|table| table.as_ref().map(|table| side(table, names, checker)));
     let mut all = [None, None, None, None];

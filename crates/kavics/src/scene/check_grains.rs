@@ -6,7 +6,7 @@ use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{BoxFile, DroppedFile, GrainsFile, LatticeFile, SceneFile, SieveFile};
 use super::unit::Dimension;
-use super::value::{ListOr, Placed, Quantity, ValueOr};
+use super::value::{ListOr, Placed, ValueOr};
 
 /// The box and how it is filled.
 #[derive(Clone, Debug)]
@@ -65,15 +65,23 @@ pub enum SizesPlan {
 
 /// Box and grains.
 pub fn grains(file: &SceneFile, checker: &mut Checker) -> Option<GrainsPlan> {
-    if let Some(layer) = &file.layer {
-        checker.refuse(&layer.span, "`[[layer]]`");
-    }
-    let container = table(file.container.as_ref(), "[box]", checker);
-    let grains = table(file.grains.as_ref(), "[grains.…]", checker);
+    let container = table(file.container.as_ref(), "box", "[box]", checker);
+    let grains = match &file.layer {
+        Some(layer) => {
+            checker.refuse(&layer.span, "`[[layer]]`");
+            None
+        }
+        None => table(
+            file.grains.as_ref(),
+            "grains",
+            "[grains.hexagonal]",
+            checker,
+        ),
+    };
     let size = container.and_then(|container| box_size(container, checker));
     let grains = grains?;
     let source = source(grains, checker);
-    let ((width, height), source) = (size?, source?);
+    let ((width, height), (source, span)) = (size?, source?);
     let filled = matches!(&source, GrainSource::Dropped(dropped) if dropped.count.is_none());
     if filled && height.is_none() {
         let key = container?.value.height.as_ref()?;
@@ -94,21 +102,22 @@ pub fn grains(file: &SceneFile, checker: &mut Checker) -> Option<GrainsPlan> {
         width,
         height,
         box_span: container?.span.clone(),
-        span: grains.span.clone(),
+        span,
         source,
     })
 }
 
 fn table<'a, T>(
     table: Option<&'a Placed<T>>,
+    what: &str,
     name: &str,
     checker: &mut Checker,
 ) -> Option<&'a Placed<T>> {
     if table.is_none() {
         checker.push(Problem::at(
             &(0..0),
-            format!("the scene has no `{name}`"),
-            format!("expected a table `{name}` in this file"),
+            format!("the scene has no {what}"),
+            format!("expected a table such as `{name}` in this file"),
         ));
     }
     table
@@ -140,16 +149,19 @@ fn box_size(container: &Placed<BoxFile>, checker: &mut Checker) -> Option<(f64, 
     let width = width
         .as_ref()
         .and_then(|w| checker.number(w, "width", Dimension::Length, Bound::Positive));
-    let height = height.as_ref().and_then(|h| match &h.value {
-        Quantity::Text(text) if text == "fit" => Some(None),
-        _ => checker
+    let height = height.as_ref().and_then(|h| match Checker::as_word(h) {
+        Some(word) => checker.word_or(&word, "height", &[("fit", None)], " or a length"),
+        None => checker
             .number(h, "height", Dimension::Length, Bound::Positive)
             .map(Some),
     });
     Some((width?, height?))
 }
 
-fn source(grains: &Placed<GrainsFile>, checker: &mut Checker) -> Option<GrainSource> {
+fn source(
+    grains: &Placed<GrainsFile>,
+    checker: &mut Checker,
+) -> Option<(GrainSource, Range<usize>)> {
     enum Table<'a> {
         Hexagonal(&'a LatticeFile),
         Square(&'a LatticeFile),
@@ -167,29 +179,36 @@ fn source(grains: &Placed<GrainsFile>, checker: &mut Checker) -> Option<GrainSou
             "hexagonal",
             hexagonal
                 .as_ref()
-                .map(|t| (Table::Hexagonal(&t.value), &t.span)),
+                .map(|t| ((Table::Hexagonal(&t.value), &t.span), &t.span)),
         ),
         (
             "square",
-            square.as_ref().map(|t| (Table::Square(&t.value), &t.span)),
+            square
+                .as_ref()
+                .map(|t| ((Table::Square(&t.value), &t.span), &t.span)),
         ),
         (
             "dropped",
-            dropped.as_ref().map(|t| (Table::Dropped(t), &t.span)),
+            dropped
+                .as_ref()
+                .map(|t| ((Table::Dropped(t), &t.span), &t.span)),
         ),
         (
             "listed",
             listed
                 .as_ref()
-                .map(|t| (Table::Listed(&t.value.file), &t.span)),
+                .map(|t| ((Table::Listed(&t.value.file), &t.span), &t.span)),
         ),
     ];
-    match checker.exactly_one(&grains.span, "the way grains are placed", alternatives)? {
+    let what = "the way grains are placed";
+    let (table, span) = checker.exactly_one(&grains.span, what, alternatives)?;
+    let source = match table {
         Table::Hexagonal(table) => hexagonal_rows(table, checker),
         Table::Square(table) => square_rows(table, checker),
         Table::Dropped(table) => dropped_plan(table, checker).map(GrainSource::Dropped),
         Table::Listed(file) => Some(GrainSource::Listed(file.clone())),
-    }
+    };
+    Some((source?, span.clone()))
 }
 
 /// Row lengths, each with its place.

@@ -3,19 +3,19 @@
 use std::ops::Range;
 
 use super::check_contacts;
+use super::check_strength;
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
-use super::file::{
-    CementedFile, CohesionlessFile, DirectFile, LimitsFile, ModuliFile, PropertyFile, ScatterFile,
-    SceneFile, StiffnessFile, StrengthFile,
+use super::file::SceneFile;
+use super::file_contacts::{
+    CementedFile, CohesionlessFile, DirectFile, ModuliFile, PropertyFile, StiffnessFile,
+    StrengthFile,
 };
 use super::scatter::Scatter;
 use super::unit::Dimension;
-use super::value::{Number, Placed, Quantity};
+use super::value::{Number, Placed};
 use crate::assembly::{ContactPoint, DualLength, Shaping};
-use crate::contact_law::{
-    Cemented, Cohesionless, Law, Property, Reading, StiffnessRule, Strength, StrengthKind,
-};
+use crate::contact_law::{Cemented, Cohesionless, Law, Property, Reading, StiffnessRule, Strength};
 use crate::ids::{Id, PerProperty, PropertyId};
 
 /// A contact property with what shapes its contacts.
@@ -116,7 +116,7 @@ fn cemented(
         .strength
         .as_ref()
         .map_or(Some((Strength::UNBREAKABLE, None)), |table| {
-            self::strength(table, checker)
+            check_strength::strength(table, checker)
         });
     let after_breakage = match &file.after_breakage {
         Some(word) if word.value != "void" => {
@@ -358,142 +358,12 @@ fn shaping(
 }
 
 fn dual(length: &Number, checker: &mut Checker) -> Option<DualLength> {
-    let is_word = |text: &str| text.starts_with(|c: char| c.is_alphabetic());
-    match &length.value {
-        Quantity::Text(text) if is_word(text) => {
-            let word = Placed {
-                value: text.clone(),
-                span: length.span.clone(),
-            };
-            let choices = [("capped", DualLength::Capped), ("full", DualLength::Full)];
-            checker.word(&word, "dual_length", &choices)
-        }
-        _ => checker
+    let choices = [("capped", DualLength::Capped), ("full", DualLength::Full)];
+    match Checker::as_word(length) {
+        Some(word) => checker.word_or(&word, "dual_length", &choices, " or a length"),
+        None => checker
             .number(length, "dual_length", Dimension::Length, Bound::Positive)
             .map(DualLength::Number),
-    }
-}
-
-fn strength(
-    table: &Placed<StrengthFile>,
-    checker: &mut Checker,
-) -> Option<(Strength, Option<Scatter>)> {
-    let file = &table.value;
-    if let Some(energy) = &file.fracture_energy {
-        checker.refuse(&energy.span, "`fracture_energy`");
-    }
-    let scatter = match &file.scatter {
-        None => Some(None),
-        Some(table) => self::scatter(table, checker).map(Some),
-    };
-    let alternatives = [
-        (
-            "stress",
-            file.stress
-                .as_ref()
-                .map(|t| ((StrengthKind::Stress, &t.value), &t.span)),
-        ),
-        (
-            "force",
-            file.force
-                .as_ref()
-                .map(|t| ((StrengthKind::Force, &t.value), &t.span)),
-        ),
-    ];
-    let (kind, limits) = checker.exactly_one(&table.span, "the strength", alternatives)?;
-    Some((self::limits(kind, limits, checker)?, scatter?))
-}
-
-fn limits(kind: StrengthKind, file: &LimitsFile, checker: &mut Checker) -> Option<Strength> {
-    let (force, moment) = match kind {
-        StrengthKind::Stress => (Dimension::Stress, Dimension::Stress),
-        StrengthKind::Force => (Dimension::Force, Dimension::Moment),
-    };
-    let mut limit = |number: &Option<Number>, key: &str, dimension: Dimension| {
-        checker.number_or(
-            f64::INFINITY,
-            number.as_ref(),
-            key,
-            dimension,
-            Bound::Positive,
-        )
-    };
-    let tension = limit(&file.tension, "tension", force);
-    let compression = limit(&file.compression, "compression", force);
-    let shear = limit(&file.shear, "shear", force);
-    let bending = limit(&file.bending, "bending", moment);
-    Some(Strength {
-        kind,
-        tension: tension?,
-        compression: compression?,
-        shear: shear?,
-        bending: bending?,
-    })
-}
-
-fn scatter(table: &Placed<ScatterFile>, checker: &mut Checker) -> Option<Scatter> {
-    enum Kind {
-        Weibull,
-        Uniform,
-        Lognormal,
-    }
-    let ScatterFile {
-        weibull,
-        uniform,
-        lognormal,
-    } = &table.value;
-    let alternatives = [
-        (
-            "weibull",
-            weibull.as_ref().map(|t| (Kind::Weibull, &t.span)),
-        ),
-        (
-            "uniform",
-            uniform.as_ref().map(|t| (Kind::Uniform, &t.span)),
-        ),
-        (
-            "lognormal",
-            lognormal.as_ref().map(|t| (Kind::Lognormal, &t.span)),
-        ),
-    ];
-    let kind = checker.exactly_one(&table.span, "the scatter of the strength", alternatives)?;
-    let mut positive = |default: f64, number: Option<&Number>, key: &str| {
-        checker.number_or(default, number, key, Dimension::Number, Bound::Positive)
-    };
-    match kind {
-        Kind::Weibull => {
-            let file = &weibull.as_ref()?.value;
-            let shape = positive(1.0, Some(&file.shape), "shape");
-            let scale = positive(1.0, file.scale.as_ref(), "scale");
-            Some(Scatter::Weibull {
-                shape: shape?,
-                scale: scale?,
-            })
-        }
-        Kind::Lognormal => {
-            let file = &lognormal.as_ref()?.value;
-            let deviation = positive(1.0, Some(&file.deviation), "deviation");
-            let median = positive(1.0, file.median.as_ref(), "median");
-            Some(Scatter::Lognormal {
-                deviation: deviation?,
-                median: median?,
-            })
-        }
-        Kind::Uniform => {
-            let file = &uniform.as_ref()?.value;
-            let from = positive(1.0, Some(&file.from), "from");
-            let to = positive(1.0, Some(&file.to), "to");
-            let (from, to) = (from?, to?);
-            if from > to {
-                checker.push(Problem::at(
-                    &file.to.span,
-                    format!("the scatter runs backwards, from {from} to {to}"),
-                    format!("expected at least {from}"),
-                ));
-                return None;
-            }
-            Some(Scatter::Uniform { from, to })
-        }
     }
 }
 

@@ -41,21 +41,24 @@ pub enum WindowPlan {
 
 /// Equilibrium, measures, records and the table to compare with.
 pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<RunPlan> {
-    let equilibrium = file.equilibrium.clone().unwrap_or_default();
-    let measure = file.measure.clone().unwrap_or_default();
-    let solving = solving(&equilibrium, checker);
-    let window = window(&measure, checker);
+    let default = (EquilibriumFile::default(), MeasureFile::default());
+    let equilibrium = file.equilibrium.as_ref();
+    let equilibrium = equilibrium.map_or(&default.0, |table| &table.value);
+    let measure = file.measure.as_ref();
+    let measure = measure.map_or(&default.1, |table| &table.value);
+    let solving = solving(equilibrium, checker);
+    let window = window(measure, checker);
     let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
         checker.word(word, "every", &[("step", false), ("iteration", true)])
     });
     let every = file
         .record
         .as_ref()
-        .and_then(|record| record.every.as_ref());
+        .and_then(|record| record.value.every.as_ref());
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
     let compare = match &file.compare {
         None => Some(None),
-        Some(table) => existing(&table.file, folder, checker).map(Some),
+        Some(table) => existing(&table.value.file, folder, checker).map(Some),
     };
     let (settings, breakage) = solving?;
     Some(RunPlan {
@@ -116,7 +119,8 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
     let solver = available(&file.solver, "solver", &solvers, checker);
     let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
-    (solver?, control?);
+    solver?;
+    control?;
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,

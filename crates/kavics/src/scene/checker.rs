@@ -91,10 +91,19 @@ impl Checker {
             _ => return Some(value),
         };
         let message = format!("`{key}` cannot be {value}");
-        self.push(
-            Problem::at(span, message, expected).help(format!("write {}", dimension.examples())),
-        );
+        self.push(Problem::at(span, message, expected));
         None
+    }
+
+    /// A word, if text that does not begin like a number stands in place of one.
+    pub fn as_word(number: &Number) -> Option<Placed<String>> {
+        match &number.value {
+            Quantity::Text(text) if text.starts_with(char::is_alphabetic) => Some(Placed {
+                value: text.clone(),
+                span: number.span.clone(),
+            }),
+            _ => None,
+        }
     }
 
     /// A whole number that is not below `least`.
@@ -119,6 +128,17 @@ impl Checker {
         key: &str,
         choices: &[(&str, T)],
     ) -> Option<T> {
+        self.word_or(word, key, choices, "")
+    }
+
+    /// What a word stands for where something else may stand as well.
+    pub fn word_or<T: Copy>(
+        &mut self,
+        word: &Placed<String>,
+        key: &str,
+        choices: &[(&str, T)],
+        other: &str,
+    ) -> Option<T> {
         let found = choices.iter().find(|(name, _)| *name == word.value);
         if found.is_none() {
             let names = || choices.iter().map(|(name, _)| *name);
@@ -126,7 +146,7 @@ impl Checker {
                 Problem::at(
                     &word.span,
                     format!("`{key}` cannot be `{}`", word.value),
-                    format!("expected {}", either(names())),
+                    format!("expected {}{other}", either(names())),
                 )
                 .suggest(likely(&word.value, names())),
             );

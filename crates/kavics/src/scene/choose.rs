@@ -2,7 +2,7 @@
 
 use super::check_loading::{ChoiceKind, ChoicePlan};
 use super::checker::Checker;
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, short};
 use super::value::Placed;
 use crate::assembly::{Assembly, Grain};
 use crate::geometry::Vector;
@@ -27,7 +27,11 @@ pub fn choose(
             ChoiceKind::Edge(edge) => nearest(SideId(*edge as u32), assembly),
             _ => where_centres_lie(grains),
         };
-        checker.push(Problem::at(&choice.span, "this names no grain", expected));
+        checker.push(Problem::at(
+            &choice.span,
+            "this choice names no grain",
+            expected,
+        ));
     }
     chosen
 }
@@ -71,7 +75,13 @@ pub fn where_centres_lie(grains: &PerGrain<Grain>) -> String {
             })
     };
     let ([left, right], [low, high]) = (span(|g| g.centre.x), span(|g| g.centre.y));
-    format!("centres of grains lie at x from {left:.6} to {right:.6}, y from {low:.6} to {high:.6}")
+    format!(
+        "centres of grains lie at x from {} to {}, y from {} to {}",
+        short(left),
+        short(right),
+        short(low),
+        short(high)
+    )
 }
 
 fn gap(side: SideId, assembly: &Assembly, grain: &Grain) -> f64 {
@@ -95,7 +105,10 @@ fn nearest(side: SideId, assembly: &Assembly) -> String {
     let name = &assembly.sides[side].name;
     match gaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((gap, id)) => {
-            format!("the grain nearest to the {name} edge is {id}, at a gap of {gap:.6}")
+            format!(
+                "the grain nearest to the {name} edge is {id}, at a gap of {}",
+                short(gap)
+            )
         }
         None => "there is no grain".to_owned(),
     }

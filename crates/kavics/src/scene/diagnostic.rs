@@ -141,16 +141,58 @@ pub fn either<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
+/// A number with six digits.
+pub fn short(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse::<f64>();
+    let rounded = rounded.unwrap_or(value);
+    if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// Keys that are known, but not available.
+const NOT_AVAILABLE: [&str; 3] = ["layer", "polygon", "fracture_energy"];
+
+/// What serde calls things, and what a user of scene files does.
+const WORDS: [(&str, &str); 8] = [
+    ("invalid type: map", "invalid type: a table"),
+    ("invalid type: sequence", "invalid type: a list"),
+    ("floating point ", "number "),
+    ("i64", "a whole number"),
+    ("a sequence", "a list"),
+    ("a map", "a table"),
+    ("a string", "a word in quotes"),
+    ("a boolean", "`true` or `false`"),
+];
+
 /// What the TOML reader says, in our words.
 pub fn from_toml(error: &toml::de::Error) -> Problem {
     let span = error.span().unwrap_or(0..0);
-    let message = error.message();
+    let message = WORDS
+        .iter()
+        .fold(error.message().to_owned(), |text, (theirs, ours)| {
+            text.replace(theirs, ours)
+        });
+    let message = message.as_str();
+    if message.starts_with("string values must be quoted") {
+        return Problem::at(
+            &span,
+            "text without quotes",
+            "expected quotes around a word or a number with a unit",
+        )
+        .help("write for example `\"30 GPa\"`");
+    }
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let suggested =
-        |name: &str, names: &[&str]| likely(name, names.iter().copied()).map(str::to_owned);
     match quoted.split_first() {
         Some((key, names)) if message.starts_with("unknown field") => {
             let problem = Problem::at(&span, format!("unknown key `{key}`"), "not known here");
+            let names: Vec<&str> = names
+                .iter()
+                .copied()
+                .filter(|name| !NOT_AVAILABLE.contains(name))
+                .collect();
             let known = if names.is_empty() {
                 "nothing is expected here".to_owned()
             } else {
@@ -158,7 +200,7 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             };
             problem
                 .help(known)
-                .suggest(suggested(key, names).as_deref())
+                .suggest(likely(key, names.iter().copied()))
         }
         Some((key, [])) if message.starts_with("missing field") => Problem::at(
             &span,
@@ -181,6 +223,14 @@ mod tests {
         assert_eq!(likely("mortr", ["grit", "mortar"]), Some("mortar"));
         assert_eq!(likely("xyz", ["grit", "mortar"]), None);
         assert_eq!(likely("x", ["y"]), None);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(short(0.1 + 0.2), "0.3");
+        assert_eq!(short(-1_234.567_89), "-1234.57");
+        assert_eq!(short(2.5e-7), "2.5e-7");
+        assert_eq!(short(0.0), "0");
     }
 
     #[test]

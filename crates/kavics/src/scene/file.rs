@@ -2,7 +2,10 @@
 
 use serde::Deserialize;
 
-use super::value::{Described, ListOr, Named, Number, Placed, Quantity, ValueOr};
+use super::file_contacts::{ContactsFile, PropertyFile, SidesFile, ZoneFile};
+use super::value::{
+    Described, ListOr, Named, Number, Placed, Quantity, ValueOr, optional_table, table,
+};
 
 /// A scene file of kavics.
 #[derive(Clone, Debug, Deserialize)]
@@ -17,13 +20,16 @@ pub struct SceneFile {
     pub thickness: Option<Number>,
     /// The container.
     #[serde(rename = "box")]
+    #[serde(default, deserialize_with = "optional_table")]
     pub container: Option<Placed<BoxFile>>,
     /// How the grains are placed: exactly one of the tables.
+    #[serde(default, deserialize_with = "optional_table")]
     pub grains: Option<Placed<GrainsFile>>,
     /// Several layers of grains: not available in this version.
     #[cfg_attr(feature = "schema", schemars(skip))]
     pub layer: Option<Placed<serde::de::IgnoredAny>>,
     /// Which grains carry a contact.
+    #[serde(default, deserialize_with = "optional_table")]
     pub contacts: Option<Placed<ContactsFile>>,
     /// Contact properties by name.
     #[serde(default)]
@@ -32,11 +38,13 @@ pub struct SceneFile {
     #[serde(default)]
     pub zone: Vec<Placed<ZoneFile>>,
     /// The sides of the box that grains touch, by name; sides not named are absent.
-    pub side: Option<SidesFile>,
+    #[serde(default, deserialize_with = "optional_table")]
+    pub side: Option<Placed<SidesFile>>,
     /// Freedoms of grains that never move.
     #[serde(default)]
     pub support: Vec<Placed<SupportFile>>,
     /// Weight of the grains.
+    #[serde(default, deserialize_with = "optional_table")]
     pub weight: Option<Placed<WeightFile>>,
     /// Prescribed motions.
     #[serde(default, rename = "move")]
@@ -48,13 +56,17 @@ pub struct SceneFile {
     #[serde(default)]
     pub stage: Vec<Placed<StageFile>>,
     /// How equilibria are found.
-    pub equilibrium: Option<EquilibriumFile>,
+    #[serde(default, deserialize_with = "optional_table")]
+    pub equilibrium: Option<Placed<EquilibriumFile>>,
     /// What is measured.
-    pub measure: Option<MeasureFile>,
+    #[serde(default, deserialize_with = "optional_table")]
+    pub measure: Option<Placed<MeasureFile>>,
     /// What is written.
-    pub record: Option<RecordFile>,
+    #[serde(default, deserialize_with = "optional_table")]
+    pub record: Option<Placed<RecordFile>>,
     /// Table to set beside the run.
-    pub compare: Option<CompareFile>,
+    #[serde(default, deserialize_with = "optional_table")]
+    pub compare: Option<Placed<CompareFile>>,
 }
 
 /// The container: a box whose lower left corner is the origin.
@@ -77,12 +89,16 @@ pub struct BoxFile {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GrainsFile {
     /// Rows of equal discs, each row in the gaps of the one below.
+    #[serde(default, deserialize_with = "optional_table")]
     pub hexagonal: Option<Placed<LatticeFile>>,
     /// Rows of equal discs, each disc above one of the row below.
+    #[serde(default, deserialize_with = "optional_table")]
     pub square: Option<Placed<LatticeFile>>,
     /// Discs that fall one after another and roll until they rest.
+    #[serde(default, deserialize_with = "optional_table")]
     pub dropped: Option<Placed<DroppedFile>>,
     /// Discs from a table.
+    #[serde(default, deserialize_with = "optional_table")]
     pub listed: Option<Placed<ListedFile>>,
 }
 
@@ -123,6 +139,7 @@ pub struct DroppedFile {
     /// Radius, or the limits between which it is uniform [length].
     pub radius: Option<Placed<ValueOr<RadiiFile>>>,
     /// Sieve curve, in place of a radius.
+    #[serde(default, deserialize_with = "optional_table")]
     pub sieve: Option<Placed<SieveFile>>,
     /// Each grain rests at the lowest place of so many drops; 1 when absent.
     pub tries: Option<Placed<i64>>,
@@ -165,249 +182,13 @@ pub struct ListedFile {
     pub file: Placed<String>,
 }
 
-/// Which grains carry a contact.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ContactsFile {
-    /// "touching" (when absent) or "neighbours": every edge of the power diagram.
-    pub between: Option<Placed<String>>,
-    /// Gap up to which grains touch, and overlap that is allowed, in mean radii; 1e-7 when absent.
-    pub touching_tolerance: Option<Number>,
-}
-
-/// A contact property: exactly one law.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct PropertyFile {
-    /// Normal force, shear force and moment; breaks.
-    pub cemented: Option<Placed<CementedFile>>,
-    /// Compression and shear only; opens and closes.
-    pub cohesionless: Option<Placed<CohesionlessFile>>,
-}
-
-/// A cemented contact.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CementedFile {
-    /// Stiffness: exactly one of the tables.
-    pub stiffness: Placed<StiffnessFile>,
-    /// Factor by which compression stiffens shear, G = G0 - mu*E*v_n/s; 0 when absent.
-    pub shear_hardening: Option<Number>,
-    /// "printed" (when absent), "potential" or "history".
-    pub reading: Option<Placed<String>>,
-    /// Share of G0 below which G does not fall.
-    pub shear_floor: Option<Number>,
-    /// "tangent" (when absent) or "midpoint" of the dual edge.
-    pub contact_point: Option<Placed<String>>,
-    /// Whether the contact point's place on the dual edge couples normal force and bending.
-    pub eccentric: Option<bool>,
-    /// "capped" (when absent), "full", or a length.
-    pub dual_length: Option<Number>,
-    /// Limits of the force components.
-    pub strength: Option<Placed<StrengthFile>>,
-    /// Energy of a softening bond: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
-    /// "void" (when absent) or the name of another contact.
-    pub after_breakage: Option<Placed<String>>,
-}
-
-/// A contact without cement.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CohesionlessFile {
-    /// Stiffness: exactly one of the tables.
-    pub stiffness: Placed<StiffnessFile>,
-    /// Factor by which compression stiffens shear; 0 when absent.
-    pub shear_hardening: Option<Number>,
-    /// "printed" (when absent), "potential" or "history".
-    pub reading: Option<Placed<String>>,
-    /// Share of G0 below which G does not fall.
-    pub shear_floor: Option<Number>,
-    /// "tangent" (when absent) or "midpoint" of the dual edge.
-    pub contact_point: Option<Placed<String>>,
-    /// "capped" (when absent), "full", or a length.
-    pub dual_length: Option<Number>,
-    /// Coulomb friction coefficient; the law as printed when absent.
-    pub friction: Option<Number>,
-}
-
-/// Stiffness: exactly one of these.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct StiffnessFile {
-    /// k = E*s, G*s, E*s^3/12 [force/length^3].
-    pub layer: Option<Placed<ModuliFile>>,
-    /// k = E*s/l, G*s/l, E*s^3/(12*l) [force/length^2].
-    pub modulus: Option<Placed<ModuliFile>>,
-    /// The stiffnesses themselves [force/length], moment [force*length].
-    pub direct: Option<Placed<DirectFile>>,
-}
-
-/// Moduli of a contact.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ModuliFile {
-    /// Normal modulus E.
-    pub normal: Number,
-    /// Shear modulus G0.
-    pub shear: Number,
-}
-
-/// Stiffnesses of a contact.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct DirectFile {
-    /// Normal stiffness [force/length].
-    pub normal: Number,
-    /// Shear stiffness [force/length].
-    pub shear: Number,
-    /// Bending stiffness [force*length]; for cemented contacts.
-    pub moment: Option<Number>,
-}
-
-/// Strength of a bond: stresses or forces; a missing one never fails.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct StrengthFile {
-    /// Limits as stress over the dual edge [force/length^2].
-    pub stress: Option<Placed<LimitsFile>>,
-    /// Limits as force [force], bending as moment [force*length].
-    pub force: Option<Placed<LimitsFile>>,
-    /// A factor on all limits, drawn for each contact.
-    pub scatter: Option<Placed<ScatterFile>>,
-    /// Energy of a softening bond: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
-}
-
-/// Limits of the force components, each positive.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LimitsFile {
-    /// Limit of tension.
-    pub tension: Option<Number>,
-    /// Limit of compression.
-    pub compression: Option<Number>,
-    /// Limit of shear.
-    pub shear: Option<Number>,
-    /// Limit of bending.
-    pub bending: Option<Number>,
-}
-
-/// How strengths scatter: exactly one of these.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ScatterFile {
-    /// Weibull distribution.
-    pub weibull: Option<Placed<WeibullFile>>,
-    /// Uniform distribution.
-    pub uniform: Option<Placed<UniformFile>>,
-    /// Lognormal distribution.
-    pub lognormal: Option<Placed<LognormalFile>>,
-}
-
-/// Weibull distribution.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct WeibullFile {
-    /// Shape.
-    pub shape: Number,
-    /// Scale; 1 when absent.
-    pub scale: Option<Number>,
-}
-
-/// Uniform distribution.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct UniformFile {
-    /// Smallest factor.
-    pub from: Number,
-    /// Largest factor.
-    pub to: Number,
-}
-
-/// Lognormal distribution.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LognormalFile {
-    /// Standard deviation of the logarithm.
-    pub deviation: Number,
-    /// Median; 1 when absent.
-    pub median: Option<Number>,
-}
-
-/// Which contact property where: everywhere, in a strip, or a random share.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ZoneFile {
-    /// Name of a contact property.
-    pub contact: Placed<String>,
-    /// Contact points in a strip.
-    pub strip: Option<Placed<RangesFile>>,
-    /// Share of all contacts, at random.
-    pub share: Option<Number>,
-}
-
-/// Ranges of coordinates; either may be missing.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RangesFile {
-    /// From and to [length].
-    pub x: Option<Placed<Vec<Number>>>,
-    /// From and to [length].
-    pub y: Option<Placed<Vec<Number>>>,
-}
-
-/// The sides of the box.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SidesFile {
-    /// The left side.
-    pub left: Option<Placed<SideFile>>,
-    /// The right side.
-    pub right: Option<Placed<SideFile>>,
-    /// The floor.
-    pub bottom: Option<Placed<SideFile>>,
-    /// The lid.
-    pub top: Option<Placed<SideFile>>,
-}
-
-/// A side of the box: a rigid body that grains touch.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SideFile {
-    /// Name of the contact property of its contacts.
-    pub contact: Placed<String>,
-    /// Grains whose gap to the side is at most this are joined to it, in mean radii; 0 when absent.
-    pub reach: Option<Number>,
-    /// Its free freedoms, of "x", "y", "rotation"; none when absent.
-    pub free: Option<Vec<Placed<String>>>,
-}
-
 /// Freedoms of grains that never move.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SupportFile {
     /// Which grains.
+    #[serde(deserialize_with = "table")]
     pub grains: Placed<ChoiceFile>,
     /// Which freedoms, of "x", "y", "rotation".
     pub fix: Placed<Vec<Placed<String>>>,
@@ -451,6 +232,7 @@ pub struct MoveFile {
     /// A side that moves: "left", "right", "bottom" or "top".
     pub side: Option<Placed<String>>,
     /// Grains that move.
+    #[serde(default, deserialize_with = "optional_table")]
     pub grains: Option<Placed<ChoiceFile>>,
     /// Displacement to the right at factor 1 [length].
     pub x: Option<Number>,
@@ -459,6 +241,7 @@ pub struct MoveFile {
     /// Rotation at factor 1 [radian], or "free" beside a strain.
     pub rotation: Option<Number>,
     /// Affine motion of the grains about the centre of the box.
+    #[serde(default, deserialize_with = "optional_table")]
     pub strain: Option<Placed<StrainFile>>,
 }
 
@@ -491,10 +274,12 @@ pub struct LoadFile {
     /// At the edge's start and end, positive along the edge [force/length].
     pub shear: Option<Placed<Vec<Number>>>,
     /// Grains that each carry the force.
+    #[serde(default, deserialize_with = "optional_table")]
     pub grains: Option<Placed<ChoiceFile>>,
     /// Side that carries the force.
     pub side: Option<Placed<String>>,
     /// The force.
+    #[serde(default, deserialize_with = "optional_table")]
     pub force: Option<Placed<ForceFile>>,
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::checker::Checker;
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, short};
 use crate::assembly::{Assembly, Partner};
 use crate::equilibrium::{Freedom, Load};
 use crate::geometry::Vector;
@@ -53,7 +53,9 @@ pub fn check(assembly: &Assembly, program: &Program, place: &Range<usize>, check
         };
         if piece.bodies.len() == 1 && !piece.loaded {
             rattlers += grains.len();
-        } else if !grains.is_empty() {
+        } else if grains.is_empty() {
+            side_adrift(&piece, &grains, assembly, place, checker);
+        } else {
             leaves_motion(&motion, &grains, place, checker);
         }
     }
@@ -230,14 +232,17 @@ fn in_words([x, y, turn]: Motion, centre: Vector, size: f64) -> String {
     // Where x − ω·(Y − y₀) and y + ω·(X − x₀) vanish.
     let turn = turn / size;
     let pole = centre + Vector::new(-y, x) * turn.recip();
-    // Adding zero makes a negative zero positive.
+    // What is nothing against the size is rounding.
+    let coordinate = |value: f64| {
+        short(if value.abs() < 1e-9 * size {
+            0.0
+        } else {
+            value
+        })
+    };
     format!(
-        "rotation about ({:.3}, {:.3})",
-        round(pole.x) + 0.0,
-        round(pole.y) + 0.0
+        "rotation about ({}, {})",
+        coordinate(pole.x),
+        coordinate(pole.y)
     )
-}
-
-fn round(value: f64) -> f64 {
-    (value * 1e3).round() / 1e3
 }

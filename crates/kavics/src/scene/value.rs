@@ -25,6 +25,49 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Placed<T> {
     }
 }
 
+struct TableOnly<T>(T);
+
+struct TableVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for TableVisitor<T> {
+    type Value = TableOnly<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table")
+    }
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(TableOnly)
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for TableOnly<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(TableVisitor(PhantomData))
+    }
+}
+
+/// A table; serde alone would take a list of its values in the order of the fields as well.
+pub fn table<'de, T, D>(deserializer: D) -> Result<Placed<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    let Placed { value, span } = Placed::<TableOnly<T>>::deserialize(deserializer)?;
+    Ok(Placed {
+        value: value.0,
+        span,
+    })
+}
+
+/// As [`table`], for a key that may be absent.
+pub fn optional_table<'de, T, D>(deserializer: D) -> Result<Option<Placed<T>>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    table(deserializer).map(Some)
+}
+
 /// What is written where a number stands: a number, a number with a unit, or a word in place of a number.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(untagged))]

@@ -116,6 +116,18 @@ impl Block {
             .collect()
     }
 
+    /// Each active contact as often as grains of the window have it.
+    pub fn met(&self, window: &Window) -> Vec<Contact> {
+        let contacts = self.assembly.contacts.iter();
+        contacts
+            .filter(|&(id, _)| self.state.contacts[id].is_active())
+            .flat_map(|(_, contact)| {
+                let times = contact.grains().filter(|&g| window.contains(g)).count();
+                vec![*contact; times]
+            })
+            .collect()
+    }
+
     /// Σ x_i f_j of the loads at the centres and the forces of the sides at their contact points.
     pub fn first_moment_of_outer_forces(&self) -> Tensor {
         let mut sum = Tensor::default();
@@ -227,15 +239,16 @@ fn contact(
     offset: [f64; 2],
 ) -> Contact {
     let normal = branch * (1.0 / branch.length());
-    // The dual length of a hexagonal lattice, 2R/√3.
-    let dual = 2.0 / 3.0_f64.sqrt();
+    // The dual length of a hexagonal lattice, 2R/√3, and others where the contact point is elsewhere.
+    let dual = (2.0 + offset[1]) / 3.0_f64.sqrt();
     Contact {
         first,
         second,
         normal,
         branch_length: branch.length(),
         point: point + normal * offset[0] + normal.quarter_turn() * offset[1],
-        dual_parts: [0.5 * dual, 0.5 * dual],
+        // Shorter than the full one, as behind a cap.
+        dual_parts: [0.3 * dual, 0.4 * dual],
         dual_length_full: dual,
         property: PropertyId(0),
         strength_factor: 1.0,

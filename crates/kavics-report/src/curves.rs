@@ -1,0 +1,255 @@
+//! Which curves the report shows.
+
+use kavics_results::{Columns, ResultsFolder};
+use serde::Serialize;
+
+use crate::ReportError;
+use crate::plot::{Plot, Series, draw};
+use crate::tensor::Principal;
+
+/// Loads and moves with a curve of their own.
+const ACTIONS_SHOWN: usize = 6;
+
+/// A plot with its heading and legend.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Figure {
+    pub(crate) title: String,
+    pub(crate) svg: String,
+    pub(crate) legend: Vec<LegendEntry>,
+}
+
+/// A line of a plot in its legend.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LegendEntry {
+    pub(crate) name: String,
+    pub(crate) colour: usize,
+    pub(crate) dashed: bool,
+}
+
+/// Curves under one heading.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Group {
+    pub(crate) heading: &'static str,
+    pub(crate) note: &'static str,
+    pub(crate) figures: Vec<Figure>,
+}
+
+/// What the curves of `steps` run over: the load factor where it only rises, the load step otherwise.
+struct Abscissa {
+    label: &'static str,
+    values: Vec<f64>,
+}
+
+impl Abscissa {
+    fn of(steps: &Columns) -> Result<Self, ReportError> {
+        let factors = steps.numbers("load_factor")?;
+        if factors.is_sorted() {
+            return Ok(Self {
+                label: "load factor",
+                values: factors,
+            });
+        }
+        Ok(Self {
+            label: "load step",
+            values: steps.numbers("step")?,
+        })
+    }
+
+    fn with(&self, values: &[f64]) -> Vec<(f64, f64)> {
+        let pairs = self.values.iter().zip(values);
+        pairs.map(|(&x, &y)| (x, y)).collect()
+    }
+}
+
+/// All curves of the report.
+pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Group>, ReportError> {
+    let over = Abscissa::of(steps)?;
+    let groups = vec![
+        Group {
+            heading: "Load and displacement",
+            note: "For a load: its whole force over the mean displacement, in its direction, of what it acts on. \
+                   For a move: the reaction over the displacement.",
+            figures: load_displacement(&folder.actions()?)?,
+        },
+        Group {
+            heading: "Contacts",
+            note: "",
+            figures: contacts(steps, &over)?,
+        },
+        Group {
+            heading: "Parts of the stress",
+            note: "Average stress of the window and its parts; tension is positive.",
+            figures: vec![
+                stress_parts(steps, &over, "xx")?,
+                stress_parts(steps, &over, "yy")?,
+            ],
+        },
+        Group {
+            heading: "Fabric",
+            note: "Eigenvalues, direction of the larger one (from the x axis, counter-clockwise), and deviator \
+                   (their difference) of the fabric, branch and contact tensors. Without a deviator there is no \
+                   direction.",
+            figures: fabric(steps, &over)?,
+        },
+        Group {
+            heading: "Energy",
+            note: "Since the start of the run. The ledger error is external work less all it went into.",
+            figures: energies(steps, &over)?,
+        },
+    ];
+    let with_figures = groups.into_iter().filter(|group| !group.figures.is_empty());
+    Ok(with_figures.collect())
+}
+
+fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figure {
+    let plot = Plot {
+        x_label,
+        y_label,
+        series,
+    };
+    let entry = |series: &Series| LegendEntry {
+        name: series.name.clone(),
+        colour: series.colour,
+        dashed: series.dashed,
+    };
+    Figure {
+        title: title.to_owned(),
+        svg: draw(&plot),
+        legend: series.iter().map(entry).collect(),
+    }
+}
+
+fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
+    let names = actions.texts("action")?;
+    let displacement = actions.numbers("displacement")?;
+    let force = actions.numbers("force")?;
+    let mut distinct: Vec<&str> = Vec::new();
+    for &name in &names {
+        if !distinct.contains(&name) {
+            distinct.push(name);
+        }
+    }
+    let curve = |name: &str| Series {
+        name: name.to_owned(),
+        points: (0..names.len())
+            .filter(|&row| names[row] == name)
+            .map(|row| (displacement[row], force[row]))
+            .collect(),
+        colour: 0,
+        dashed: false,
+    };
+    Ok(distinct
+        .into_iter()
+        .map(curve)
+        .filter(|series| series.points.iter().any(|&(d, p)| d != 0.0 || p != 0.0))
+        .take(ACTIONS_SHOWN)
+        .map(|series| figure(&series.name.clone(), "displacement", "force", &[series]))
+        .collect())
+}
+
+fn column(
+    steps: &Columns,
+    over: &Abscissa,
+    column: &str,
+    name: &str,
+    colour: usize,
+) -> Result<Series, ReportError> {
+    Ok(Series {
+        name: name.to_owned(),
+        points: over.with(&steps.numbers(column)?),
+        colour,
+        dashed: false,
+    })
+}
+
+fn contacts(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> {
+    let broken = [
+        column(steps, over, "broken", "so far", 1)?,
+        column(steps, over, "broken_in_step", "in the step", 5)?,
+    ];
+    let active = [column(steps, over, "contacts", "active contacts", 0)?];
+    let porosity = [column(steps, over, "graph_porosity", "graph porosity", 2)?];
+    Ok(vec![
+        figure("Broken contacts", over.label, "contacts", &broken),
+        figure("Active contacts", over.label, "contacts", &active),
+        figure(
+            "Graph porosity",
+            over.label,
+            "share of the window",
+            &porosity,
+        ),
+    ])
+}
+
+fn stress_parts(steps: &Columns, over: &Abscissa, component: &str) -> Result<Figure, ReportError> {
+    let part = |prefix: &str, name: &str, colour| {
+        column(steps, over, &format!("{prefix}_{component}"), name, colour)
+    };
+    let series = [
+        part("shear_stress", "shear", 0)?,
+        part("variation_stress", "normal variation", 1)?,
+        part("fabric_stress", "fabric", 2)?,
+        column(steps, over, "isotropic_stress", "isotropic", 3)?,
+        Series {
+            dashed: true,
+            ..part("stress", "sum", 4)?
+        },
+    ];
+    let title = format!("Stress {component}");
+    Ok(figure(&title, over.label, "stress", &series))
+}
+
+/// The tensors whose spread the report shows, with a colour.
+const FABRICS: [(&str, usize); 3] = [("fabric", 0), ("branch", 1), ("contact", 2)];
+
+fn fabric(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> {
+    let mut values = Vec::new();
+    let mut directions = Vec::new();
+    let mut deviators = Vec::new();
+    for (tensor, colour) in FABRICS {
+        let principal = Principal::of_column(steps, tensor)?;
+        let series = |name: String, read: fn(&Principal) -> f64, dashed| Series {
+            name,
+            points: over.with(&principal.iter().map(read).collect::<Vec<_>>()),
+            colour,
+            dashed,
+        };
+        values.push(series(format!("{tensor}, larger"), |p| p.larger, false));
+        values.push(series(format!("{tensor}, smaller"), |p| p.smaller, true));
+        directions.push(series(tensor.to_owned(), |p| p.degrees, false));
+        deviators.push(series(tensor.to_owned(), Principal::deviator, false));
+    }
+    Ok(vec![
+        figure("Eigenvalues", over.label, "eigenvalue", &values),
+        figure("Direction", over.label, "degrees", &directions),
+        figure(
+            "Deviator",
+            over.label,
+            "difference of eigenvalues",
+            &deviators,
+        ),
+    ])
+}
+
+fn energies(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> {
+    let all = [
+        ("external_work", "external work", 0),
+        ("elastic_energy", "elastic", 2),
+        ("fracture_energy", "fracture", 1),
+        ("release_energy", "release", 5),
+        ("friction_work", "friction", 3),
+        ("nonpotential_work", "non-potential", 6),
+    ];
+    let mut series = Vec::new();
+    for (name, label, colour) in all {
+        let line = column(steps, over, name, label, colour)?;
+        if line.points.iter().any(|&(_, y)| y != 0.0) {
+            series.push(line);
+        }
+    }
+    let ledger = [column(steps, over, "ledger_error", "ledger error", 7)?];
+    Ok(vec![
+        figure("Work and energy", over.label, "force × length", &series),
+        figure("Ledger error", over.label, "force × length", &ledger),
+    ])
+}

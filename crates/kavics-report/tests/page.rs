@@ -1,0 +1,150 @@
+//! What stands on the page.
+
+#[path = "../../kavics-results/tests/block/mod.rs"]
+mod block;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kavics::scene::Scene;
+use kavics_report::Comparison;
+use kavics_results::ResultsFolder;
+
+fn page_of(place: &Path, scene: &Scene) -> String {
+    let folder = place.join("block.results");
+    block::write(&folder, scene);
+    let path = kavics_report::write(&folder, None).expect("a report");
+    fs::read_to_string(path).expect("a page")
+}
+
+fn place() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn with_table(place: &Path, text: &str) -> Scene {
+    let path: PathBuf = place.join("table.csv");
+    fs::write(&path, text).expect("room on the disk");
+    Scene {
+        compare: Some(path),
+        ..block::scene(7, 5)
+    }
+}
+
+#[test]
+fn the_page_needs_no_script_and_no_network() {
+    let place = place();
+    let page = page_of(place.path(), &block::scene(7, 5));
+    for foreign in [
+        "<script", "http://", "https://", "url(", "@import", "<link", "<img",
+    ] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+}
+
+#[test]
+fn the_stress_parts_stand_as_in_the_printed_table() {
+    let place = place();
+    let page = page_of(place.path(), &block::scene(7, 5));
+    // Bojtár & Bagi (1989), section 5, load steps 1 and 5.
+    for printed in [
+        "1. (1.00)",
+        "5.305",
+        "−5.305",
+        "−15.180",
+        "10.363",
+        "2.784",
+        "−27.333",
+        "0.759",
+    ] {
+        assert!(page.contains(printed), "{printed}");
+    }
+}
+
+#[test]
+fn steps_around_the_first_breakage_are_drawn() {
+    let place = place();
+    let page = page_of(place.path(), &block::scene(7, 5));
+    assert!(page.contains("Load step 4<"));
+    assert!(page.contains("Load step 5<small>load factor 1.8 · 3 broken"));
+}
+
+#[test]
+fn a_title_is_text_and_no_markup() {
+    let place = place();
+    let mut scene = block::scene(7, 5);
+    scene.title = "a <b> & c".to_owned();
+    let page = page_of(place.path(), &scene);
+    assert!(page.contains("<h1>a &lt;b&gt; &amp; c</h1>"));
+}
+
+#[test]
+fn a_compared_table_shows_its_notes_and_the_differences() {
+    let place = place();
+    let table =
+        "# the geometry is a reconstruction\nload_factor,shear_stress_xx\n1.0,5.0\n1.8,10.0\n";
+    let scene = with_table(place.path(), table);
+    let page = page_of(place.path(), &scene);
+    assert!(page.contains("the geometry is a reconstruction"));
+    assert!(page.contains("<td>5.305</td><td>5</td><td>0.305</td>"));
+}
+
+#[test]
+fn a_table_is_matched_by_load_factor() {
+    let place = place();
+    let scene = with_table(
+        place.path(),
+        "load_factor,stress_yy\n1.4,-42.1\n1.8,-54.13\n",
+    );
+    let folder = place.path().join("block.results");
+    block::write(&folder, &scene);
+    let comparison = Comparison::read(&ResultsFolder::open(&folder).expect("results"))
+        .expect("a table")
+        .expect("one is named");
+    assert_eq!(comparison.matched_by, "load_factor");
+    let labels: Vec<&str> = comparison.columns[0]
+        .rows
+        .iter()
+        .map(|row| row.label.as_str())
+        .collect();
+    assert_eq!(labels, ["1.4", "1.8"]);
+}
+
+#[test]
+fn a_table_without_a_known_column_is_refused() {
+    let place = place();
+    let scene = with_table(place.path(), "pressure\n1.0\n");
+    let folder = place.path().join("block.results");
+    block::write(&folder, &scene);
+    let message = kavics_report::write(&folder, None)
+        .expect_err("nothing to compare")
+        .to_string();
+    assert_eq!(
+        message,
+        "compare.csv: no column has the name of a column of steps"
+    );
+}
+
+#[test]
+fn results_without_a_load_step_have_a_page() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    let results =
+        kavics_results::Results::create(&folder, &scene, kavics_results::Options::default());
+    let failure = Some("load step 1: mechanism".to_owned());
+    results
+        .expect("an empty place")
+        .finish(kavics_results::RunState::NoEquilibrium, failure)
+        .expect("room on the disk");
+    let path = kavics_report::write(&folder, None).expect("a report");
+    let page = fs::read_to_string(path).expect("a page");
+    assert!(page.contains("load step 1: mechanism"));
+}
+
+#[test]
+fn a_large_assembly_stays_below_fifteen_megabytes() {
+    let place = place();
+    let page = page_of(place.path(), &block::scene(317, 316));
+    assert!(page.len() < 15_000_000, "{}", page.len());
+    assert!(!page.contains("class=\"grain\""));
+}

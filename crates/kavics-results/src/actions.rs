@@ -1,0 +1,157 @@
+//! The table `actions`: a row an action at every load step, its displacement and the force that goes with it.
+//!
+//! Displacement d and force P of a load or move are conjugate: P·δd is the work of the action.
+
+use kavics::equilibrium::{Displacement, Equilibrium, Freedom, Load};
+use kavics::ids::BodyId;
+use kavics::loading::Program;
+
+use crate::column::{Column, Unit};
+
+/// A row of `actions`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActionRow {
+    /// Load step; 0 before loading.
+    pub step: usize,
+    /// Name of the load or move.
+    pub name: String,
+    /// Its factor.
+    pub factor: f64,
+    /// How far the bodies it acts on have gone in its direction, weighted by the size of the action on each,
+    /// `[length]`; a rotation, where the action is of moments or rotations alone.
+    pub displacement: f64,
+    /// The whole force of the action in its direction, `[force]`; a moment, where it is of these alone.
+    pub force: f64,
+}
+
+/// The columns of `actions`, in their order.
+pub(crate) fn action_columns() -> Vec<Column<ActionRow>> {
+    vec![
+        Column::integer("step", |r: &ActionRow| r.step as i64),
+        Column::text("action", |r: &ActionRow| Some(&r.name)),
+        Column::number("factor", Unit::Dimensionless, |r: &ActionRow| r.factor),
+        Column::number("displacement", Unit::Length, |r: &ActionRow| r.displacement),
+        Column::number("force", Unit::Force, |r: &ActionRow| r.force),
+    ]
+}
+
+/// One freedom on which an action acts, and its size at factor 1.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    body: BodyId,
+    freedom: Freedom,
+    size: f64,
+}
+
+/// The factors of all actions, kept while stages drive some of them.
+#[derive(Debug)]
+pub(crate) struct Actions {
+    factors: Vec<f64>,
+    loads: Vec<Vec<Part>>,
+    moves: Vec<Vec<Part>>,
+}
+
+impl Actions {
+    pub(crate) fn new(program: &Program) -> Self {
+        let count = program.actions.len();
+        let mut actions = Self {
+            factors: vec![0.0; count],
+            loads: vec![Vec::new(); count],
+            moves: vec![Vec::new(); count],
+        };
+        for applied in &program.loads {
+            actions.loads[applied.action].extend(load_parts(applied.body, applied.load));
+        }
+        for moved in &program.prescribed {
+            actions.moves[moved.action].push(Part {
+                body: moved.body,
+                freedom: moved.freedom,
+                size: moved.amplitude,
+            });
+        }
+        for parts in actions.loads.iter_mut().chain(&mut actions.moves) {
+            keep_one_dimension(parts);
+        }
+        actions
+    }
+
+    /// The rows of the load step that `equilibrium` ends.
+    pub(crate) fn rows(&mut self, program: &Program, equilibrium: &Equilibrium) -> Vec<ActionRow> {
+        if let (1.., Some(stage)) = (equilibrium.step, program.stages.get(equilibrium.stage)) {
+            for &action in &stage.actions {
+                self.factors[action] = equilibrium.load_factor;
+            }
+        }
+        let named = program.actions.iter().enumerate();
+        named
+            .map(|(action, named)| {
+                let [displacement, force] = self.conjugates(action, equilibrium);
+                ActionRow {
+                    step: equilibrium.step,
+                    name: named.name.clone(),
+                    factor: self.factors[action],
+                    displacement,
+                    force,
+                }
+            })
+            .collect()
+    }
+
+    fn conjugates(&self, action: usize, equilibrium: &Equilibrium) -> [f64; 2] {
+        let factor = self.factors[action];
+        let (loads, moves) = (&self.loads[action], &self.moves[action]);
+        if !loads.is_empty() {
+            let whole: f64 = loads.iter().map(|part| part.size.abs()).sum();
+            let work = |part: &Part| part.size * displaced(equilibrium, *part);
+            return [ratio(loads.iter().map(work).sum(), whole), factor * whole];
+        }
+        let whole: f64 = moves.iter().map(|part| part.size.abs()).sum();
+        let mean = ratio(whole, moves.len() as f64);
+        let work = |part: &Part| part.size * reaction(equilibrium, *part);
+        [factor * mean, ratio(moves.iter().map(work).sum(), mean)]
+    }
+}
+
+fn load_parts(body: BodyId, load: Load) -> impl Iterator<Item = Part> {
+    let sizes = [
+        (Freedom::X, load.x),
+        (Freedom::Y, load.y),
+        (Freedom::Rotation, load.moment),
+    ];
+    let acting = sizes.into_iter().filter(|(_, size)| *size != 0.0);
+    acting.map(move |(freedom, size)| Part {
+        body,
+        freedom,
+        size,
+    })
+}
+
+/// Forces and moments cannot be added: rotations are left out where anything else is there.
+fn keep_one_dimension(parts: &mut Vec<Part>) {
+    parts.retain(|part| part.size != 0.0);
+    if parts.iter().any(|part| part.freedom != Freedom::Rotation) {
+        parts.retain(|part| part.freedom != Freedom::Rotation);
+    }
+}
+
+fn displaced(equilibrium: &Equilibrium, part: Part) -> f64 {
+    let Displacement { x, y, rotation } = equilibrium.state.displacements[part.body];
+    match part.freedom {
+        Freedom::X => x,
+        Freedom::Y => y,
+        Freedom::Rotation => rotation,
+    }
+}
+
+fn reaction(equilibrium: &Equilibrium, part: Part) -> f64 {
+    let Load { x, y, moment } = equilibrium.reactions[part.body];
+    match part.freedom {
+        Freedom::X => x,
+        Freedom::Y => y,
+        Freedom::Rotation => moment,
+    }
+}
+
+fn ratio(above: f64, below: f64) -> f64 {
+    if below == 0.0 { 0.0 } else { above / below }
+}

@@ -1,0 +1,120 @@
+//! What is sought and how far the search has come: actions, configurations, failures.
+
+use super::bond::Bond;
+use super::{Displacement, Freedom, Iterate, Load, SolveError, State};
+use crate::assembly::{Assembly, Partner};
+use crate::ids::{BodyId, ContactId, GrainId, PerBody, PerContact};
+
+/// What acts on the assembly.
+#[derive(Clone, Debug, Default)]
+pub struct Action {
+    /// External load on each body.
+    pub loads: PerBody<Load>,
+    /// Values of the moved freedoms.
+    pub moved: Vec<(BodyId, Freedom, f64)>,
+}
+
+/// Displacements and bonds, and how well they balance.
+#[derive(Clone, Debug, Default)]
+pub struct Configuration {
+    /// Displacement of each body.
+    pub displacements: PerBody<Displacement>,
+    /// Each contact.
+    pub bonds: PerContact<Bond>,
+}
+
+impl Configuration {
+    /// As a result.
+    pub fn state(&self) -> State {
+        State {
+            displacements: self.displacements.clone(),
+            contacts: self.bonds.map(Bond::state),
+        }
+    }
+}
+
+/// Why a configuration does not balance; the load path adds load step and factor.
+#[derive(Clone, Debug)]
+pub enum Failure {
+    /// The iteration did not settle.
+    NotConverged {
+        /// Linear solves.
+        iterations: usize,
+        /// Last residual.
+        residual: f64,
+        /// Body with the largest unbalanced force.
+        at: BodyId,
+    },
+    /// Loads move grains that nothing holds.
+    Mechanism {
+        /// Those that move most.
+        grains: Vec<GrainId>,
+    },
+    /// Contacts change phase without end.
+    Chatter {
+        /// Which.
+        contacts: Vec<ContactId>,
+    },
+    /// The shear modulus of a contact is not positive.
+    ShearLost {
+        /// Which.
+        contact: ContactId,
+    },
+}
+
+impl Failure {
+    /// With load step and factor, as the user sees it.
+    pub fn at(
+        self,
+        step: usize,
+        load_factor: f64,
+        assembly: &Assembly,
+        tolerance: f64,
+    ) -> SolveError {
+        match self {
+            Self::NotConverged {
+                iterations,
+                residual,
+                at,
+            } => SolveError::NotConverged {
+                step,
+                load_factor,
+                iterations,
+                residual,
+                tolerance,
+                at: match assembly.partner(at) {
+                    Partner::Grain(grain) => format!("grain {grain}"),
+                    Partner::Side(side) => format!("side {}", assembly.sides[side].name),
+                },
+            },
+            Self::Mechanism { grains } => SolveError::Mechanism {
+                step,
+                load_factor,
+                grains,
+            },
+            Self::Chatter { contacts } => SolveError::Chatter {
+                step,
+                load_factor,
+                contacts,
+            },
+            Self::ShearLost { contact } => SolveError::ShearLost {
+                step,
+                load_factor,
+                contact,
+            },
+        }
+    }
+}
+
+/// Counts of one search for equilibrium.
+#[derive(Clone, Debug, Default)]
+pub struct Progress {
+    /// Linear solves.
+    pub iterations: usize,
+    /// Last residual.
+    pub residual: f64,
+    /// Floppy modes held in the last factorisation.
+    pub held_pivots: usize,
+    /// The way, when asked for.
+    pub iterates: Vec<Iterate>,
+}

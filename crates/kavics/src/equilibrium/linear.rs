@@ -1,0 +1,152 @@
+//! The linear systems: assembly of the stiffness, choice of the solver.
+
+use super::Iteration;
+use super::Load;
+use super::configuration::{Configuration, Progress};
+use super::direct::{GeneralSolver, Singular, SymmetricSolver};
+use super::sparsity::{Sparsity, Stored};
+use super::system::System;
+use crate::ids::{Id, PerBody};
+
+/// From this many unknowns on, a factor is kept until the iteration drops it.
+const LARGE: usize = 10_000;
+
+impl System<'_> {
+    /// One linear solve: the step that the iteration matrix answers the unbalanced loads with.
+    pub(super) fn solve(
+        &mut self,
+        configuration: &Configuration,
+        unbalanced: &PerBody<Load>,
+        iteration: Iteration,
+        proximal: f64,
+        progress: &mut Progress,
+    ) -> Result<Vec<f64>, Singular> {
+        let mut right = vec![0.0; self.unknowns()];
+        for body in unbalanced.ids() {
+            let load = self.free_part(body, unbalanced[body]).components();
+            for (value, number) in load.into_iter().zip(&self.numbers[body.index()]) {
+                if let Some(number) = number {
+                    right[*number as usize] = value;
+                }
+            }
+        }
+        progress.iterations += 1;
+        if right.is_empty() {
+            return Ok(right);
+        }
+        let general = iteration == Iteration::Tangent && self.is_unsymmetric(configuration);
+        let solved = if general {
+            self.solve_general(configuration, proximal, &mut right)
+        } else {
+            self.solve_symmetric(configuration, iteration, proximal, &mut right, progress)
+        };
+        match solved {
+            Ok(()) if right.iter().all(|value| value.is_finite()) => Ok(right),
+            _ => Err(Singular),
+        }
+    }
+
+    fn is_unsymmetric(&self, configuration: &Configuration) -> bool {
+        configuration.bonds.values().iter().any(|bond| {
+            let tangent = self.stiffness_of(bond, Iteration::Tangent);
+            tangent[0][1] != tangent[1][0]
+                || tangent[0][2] != tangent[2][0]
+                || tangent[1][2] != tangent[2][1]
+        })
+    }
+
+    fn solve_symmetric(
+        &mut self,
+        configuration: &Configuration,
+        iteration: Iteration,
+        proximal: f64,
+        right: &mut [f64],
+        progress: &mut Progress,
+    ) -> Result<(), Singular> {
+        if self.symmetric.is_none() {
+            self.symmetric = Some(SymmetricSolver::new(&self.lower)?);
+        }
+        let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
+        if !lagging {
+            let values = self.values(configuration, iteration, proximal, &self.lower);
+            if self.factored.as_ref().is_none_or(|(old, _)| *old != values) {
+                let solver = self.symmetric.as_mut().ok_or(Singular)?;
+                let held = solver.factorise(&self.lower, &values)?;
+                self.factored = Some((values, held));
+            }
+        }
+        progress.held_pivots = self.factored.as_ref().map_or(0, |(_, held)| *held);
+        self.symmetric.as_mut().ok_or(Singular)?.solve(right);
+        if proximal > 0.0 {
+            self.factored = None;
+        }
+        Ok(())
+    }
+
+    fn solve_general(
+        &mut self,
+        configuration: &Configuration,
+        proximal: f64,
+        right: &mut [f64],
+    ) -> Result<(), Singular> {
+        let full = match self.full.take() {
+            Some(full) => full,
+            None => Sparsity::new(&self.numbers, &self.frames, Stored::Full),
+        };
+        if self.general.is_none() {
+            self.general = Some(GeneralSolver::new(&full)?);
+        }
+        let values = self.values(configuration, Iteration::Tangent, proximal, &full);
+        let solver = self.general.as_mut().ok_or(Singular)?;
+        let factorised = solver.factorise(&full, &values);
+        self.full = Some(full);
+        factorised?;
+        solver.solve(right);
+        Ok(())
+    }
+
+    /// The stiffness of the assembly; 1 on the diagonal of what is set aside.
+    fn values(
+        &self,
+        configuration: &Configuration,
+        iteration: Iteration,
+        proximal: f64,
+        sparsity: &Sparsity,
+    ) -> Vec<f64> {
+        let mut values = vec![0.0; sparsity.row.len()];
+        for (contact, (frame, bond)) in self
+            .frames
+            .iter()
+            .zip(configuration.bonds.values())
+            .enumerate()
+        {
+            if bond.is_active() && !self.set_aside[frame.first.index()] {
+                let k = self.stiffness_of(bond, iteration);
+                sparsity.add(
+                    &mut values,
+                    contact,
+                    frame,
+                    &self.numbers,
+                    &frame.stiffness(&k),
+                );
+            }
+        }
+        for (body, numbers) in self.numbers.iter().enumerate() {
+            for number in numbers.iter().flatten() {
+                let diagonal = sparsity.diagonal(*number as usize);
+                if self.set_aside[body] {
+                    values[diagonal] = 1.0;
+                } else if proximal > 0.0 {
+                    values[diagonal] += proximal * closed_stiffness(configuration);
+                }
+            }
+        }
+        values
+    }
+}
+
+/// A stiffness that every freedom would have if its contacts were closed: the mean normal stiffness.
+fn closed_stiffness(configuration: &Configuration) -> f64 {
+    let bonds = configuration.bonds.values();
+    bonds.iter().map(|bond| bond.stiffness.normal).sum::<f64>() / bonds.len().max(1) as f64
+}

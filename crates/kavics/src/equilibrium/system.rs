@@ -1,0 +1,223 @@
+//! The assembly as a system of equations: unknowns, pieces, forces and what they leave unbalanced.
+
+use super::bond::Bond;
+use super::configuration::Configuration;
+use super::direct::{GeneralSolver, SymmetricSolver};
+use super::kinematics::{ALL_FREEDOMS, ContactFrame};
+use super::pieces::Pieces;
+use super::sparsity::{Numbers, Sparsity, Stored};
+use super::{Freedom, Iteration, Load, Settings};
+use crate::assembly::Assembly;
+use crate::contact_law::{ContactForce, Law, Matrix, Property};
+use crate::ids::{BodyId, Id, PerBody, PerContact, PerProperty};
+
+/// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
+pub struct System<'a> {
+    pub assembly: &'a Assembly,
+    pub properties: &'a PerProperty<Property>,
+    pub settings: Settings,
+    pub frames: Vec<ContactFrame>,
+    pub(super) numbers: Vec<Numbers>,
+    /// Bodies with a held or moved freedom.
+    pub anchored: Vec<bool>,
+    pub(super) lower: Sparsity,
+    pub(super) full: Option<Sparsity>,
+    pub(super) symmetric: Option<SymmetricSolver>,
+    pub(super) general: Option<GeneralSolver>,
+    /// Values that the symmetric factor belongs to, and how many floppy modes it holds.
+    pub(super) factored: Option<(Vec<f64>, usize)>,
+    /// Bodies left out: nothing holds and nothing loads their piece.
+    pub set_aside: Vec<bool>,
+    /// Largest contact force of any equilibrium so far: below its rounding there is no force.
+    pub largest_force: f64,
+}
+
+/// Unbalanced loads and the scale to see them by.
+pub struct Imbalance {
+    /// External loads plus those of the contacts.
+    pub unbalanced: PerBody<Load>,
+    /// Largest unbalanced force at a free freedom.
+    pub largest: f64,
+    /// The body that has it.
+    pub at: BodyId,
+    /// Largest contact force.
+    pub force: f64,
+}
+
+impl Imbalance {
+    /// Largest unbalanced force over largest contact force; 0 where there is neither.
+    pub fn residual(&self, noise: f64) -> f64 {
+        if self.force <= noise && self.largest <= noise {
+            0.0
+        } else {
+            self.largest / self.force
+        }
+    }
+}
+
+impl<'a> System<'a> {
+    /// The system in which the given freedoms are held or moved.
+    pub fn new(
+        assembly: &'a Assembly,
+        properties: &'a PerProperty<Property>,
+        settings: Settings,
+        bound: &[(BodyId, Freedom)],
+    ) -> Self {
+        let frames: Vec<_> = assembly
+            .contacts
+            .values()
+            .iter()
+            .map(|c| ContactFrame::new(assembly, c))
+            .collect();
+        let mut free = vec![[true; ALL_FREEDOMS.len()]; assembly.body_count()];
+        for &(body, freedom) in bound {
+            free[body.index()][freedom.index()] = false;
+        }
+        let mut next = 0;
+        let numbers: Vec<Numbers> = free
+            .iter()
+            .map(|body| {
+                body.map(|free| {
+                    free.then(|| {
+                        next += 1;
+                        next - 1
+                    })
+                })
+            })
+            .collect();
+        let lower = Sparsity::new(&numbers, &frames, Stored::Lower);
+        Self {
+            assembly,
+            properties,
+            settings,
+            anchored: free
+                .iter()
+                .map(|body| body.iter().any(|free| !free))
+                .collect(),
+            set_aside: vec![false; assembly.body_count()],
+            frames,
+            numbers,
+            lower,
+            full: None,
+            symmetric: None,
+            general: None,
+            factored: None,
+            largest_force: 0.0,
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.lower.order()
+    }
+
+    /// Whether a freedom is held or moved.
+    pub fn is_bound(&self, body: BodyId, freedom: Freedom) -> bool {
+        self.numbers[body.index()][freedom.index()].is_none()
+    }
+
+    /// Below this a force is rounding.
+    pub fn noise(&self) -> f64 {
+        1e-12 * self.largest_force
+    }
+
+    /// Finds the pieces that nothing holds and nothing loads, and leaves them out.
+    pub fn leave_out_loose_pieces(&mut self, bonds: &PerContact<Bond>, loads: &PerBody<Load>) {
+        let active = self
+            .frames
+            .iter()
+            .zip(bonds.values())
+            .filter(|(_, bond)| bond.is_active())
+            .map(|(f, _)| f);
+        let pieces = Pieces::new(self.assembly.body_count(), active);
+        let wanted =
+            pieces.any(|body| self.anchored[body] || loads.values()[body] != Load::default());
+        for (set_aside, wanted) in self.set_aside.iter_mut().zip(wanted) {
+            *set_aside = !wanted;
+        }
+    }
+
+    /// Relative displacement and force of every contact at the present displacements.
+    pub fn respond(&self, configuration: &mut Configuration) {
+        let Configuration {
+            displacements,
+            bonds,
+        } = configuration;
+        for (frame, bond) in self.frames.iter().zip(bonds.values_mut()) {
+            bond.displacement = frame
+                .relative_displacement(displacements[frame.first], displacements[frame.second]);
+            bond.force = bond.respond(bond.displacement, self.properties).force;
+        }
+    }
+
+    /// What the loads and the contact forces leave unbalanced.
+    pub fn imbalance(&self, configuration: &Configuration, loads: &PerBody<Load>) -> Imbalance {
+        let forces = configuration.bonds.values().iter().map(|bond| bond.force);
+        self.imbalance_of(forces, loads)
+    }
+
+    pub(super) fn imbalance_of(
+        &self,
+        forces: impl Iterator<Item = ContactForce>,
+        loads: &PerBody<Load>,
+    ) -> Imbalance {
+        let mut unbalanced = loads.clone();
+        let mut force: f64 = 0.0;
+        for (frame, q) in self.frames.iter().zip(forces) {
+            let [first, second] = frame.loads(q);
+            unbalanced[frame.first] += first;
+            unbalanced[frame.second] += second;
+            force = force.max(q.normal.hypot(q.shear));
+        }
+        let (mut largest, mut at) = (0.0, BodyId(0));
+        for body in unbalanced.ids() {
+            let here = self
+                .free_part(body, unbalanced[body])
+                .largest_force(self.moment_arm(body));
+            // A sum that is not a number must not pass for balance.
+            if here > largest || here.is_nan() {
+                (largest, at) = (here, body);
+            }
+        }
+        Imbalance {
+            unbalanced,
+            largest,
+            at,
+            force,
+        }
+    }
+
+    pub(super) fn moment_arm(&self, body: BodyId) -> f64 {
+        self.assembly.moment_arm(self.assembly.partner(body))
+    }
+
+    /// The components of a load at freedoms that are unknown.
+    pub(super) fn free_part(&self, body: BodyId, load: Load) -> Load {
+        if self.set_aside[body.index()] {
+            return Load::default();
+        }
+        let mut components = load.components();
+        for (component, number) in components.iter_mut().zip(&self.numbers[body.index()]) {
+            if number.is_none() {
+                *component = 0.0;
+            }
+        }
+        Load::from_components(components)
+    }
+
+    pub(super) fn stiffness_of(&self, bond: &Bond, iteration: Iteration) -> Matrix {
+        let response = bond.respond(bond.displacement, self.properties);
+        match iteration {
+            Iteration::Secant => response.secant,
+            Iteration::Tangent => response.tangent,
+        }
+    }
+
+    pub(super) fn has_phases(&self, configuration: &Configuration) -> bool {
+        configuration
+            .bonds
+            .values()
+            .iter()
+            .any(|bond| bond.law(self.properties).is_some_and(Law::has_phases))
+    }
+}
