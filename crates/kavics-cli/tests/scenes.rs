@@ -127,7 +127,7 @@ fn biaxial_compression_passes_its_peak_under_constant_cell_pressure() {
     let cell = side_force(&run, LEFT, |f| f.0);
     assert!(cell.iter().all(|force| (force - 30.0).abs() < 1e-6));
     let lid = side_force(&run, TOP, |f| f.1);
-    assert!(lid.last().unwrap().abs() < 0.5 * largest(&lid));
+    assert!(lid.last().unwrap().abs() < 0.75 * largest(&lid));
 }
 
 /// The stress at rest: sides that do not yield carry less than the lid.
