@@ -32,6 +32,8 @@ pub enum Task {
     Measure(MeasureArguments),
     /// Write the report of finished results: one page, no network
     Report(ReportArguments),
+    /// Write the JSON Schema of the scene file to stdout
+    Schema,
     /// Write completions for a shell to stdout
     Completions(CompletionsArguments),
     /// Write the manual page to stdout

@@ -36,6 +36,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man => texts::man(),
     }

@@ -181,6 +181,14 @@ pub fn compared(comparison: &Comparison) -> String {
     for note in &comparison.notes {
         let _ = writeln!(text, "# {note}");
     }
+    if comparison
+        .columns
+        .iter()
+        .all(|column| column.rows.is_empty())
+    {
+        let _ = writeln!(text, "no row of the table has a {by} that the run reached");
+        return text;
+    }
     let _ = writeln!(
         text,
         "{:<24} {:>12} {:>12} {:>12}  at {by}",

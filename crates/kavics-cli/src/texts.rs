@@ -1,4 +1,4 @@
-//! The tasks that only write a text: report, completions, manual page.
+//! The tasks that only write a text: report, schema, completions, manual page.
 
 use std::io::{Write, stdout};
 
@@ -11,6 +11,10 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let path = kavics_report::write(&arguments.results, arguments.output.as_deref())?;
     eprintln!("report: {}", path.display());
     Ok(())
+}
+
+pub fn schema() -> Result<(), Failure> {
+    Ok(writeln!(stdout(), "{}", kavics::scene::schema())?)
 }
 
 pub fn completions(arguments: &CompletionsArguments) -> Result<(), Failure> {

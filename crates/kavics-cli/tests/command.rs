@@ -39,6 +39,7 @@ fn every_task_has_a_help() {
         "run",
         "measure",
         "report",
+        "schema",
         "completions",
         "man",
     ];
@@ -129,4 +130,14 @@ fn completions_and_manual_page_go_to_stdout() {
         .success();
     let manual = answer(place.path(), &["man"]);
     assert!(manual.contains(".TH kavics 1"), "{manual}");
+}
+
+#[test]
+fn the_schema_is_json_and_knows_the_tables_of_a_scene() {
+    let place = place();
+    let output = kavics(place.path(), &["schema"])
+        .output()
+        .expect("the command runs");
+    let schema: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(schema["properties"]["stage"].is_object());
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::ReportError;
 use crate::plot::{Plot, Series, draw};
-use crate::tensor::Principal;
+use crate::tensor::{Principal, near};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
@@ -202,22 +202,31 @@ fn stress_parts(steps: &Columns, over: &Abscissa, component: &str) -> Result<Fig
 /// The tensors whose spread the report shows, with a colour.
 const FABRICS: [(&str, usize); 3] = [("fabric", 0), ("branch", 1), ("contact", 2)];
 
+/// Middle of the half turn in which the first direction is named.
+const MIDDLE: f64 = 45.0;
+
 fn fabric(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> {
     let mut values = Vec::new();
     let mut directions = Vec::new();
     let mut deviators = Vec::new();
+    let mut reference = None;
     for (tensor, colour) in FABRICS {
         let principal = Principal::of_column(steps, tensor)?;
-        let series = |name: String, read: fn(&Principal) -> f64, dashed| Series {
+        let first = principal.iter().map(|p| p.degrees).find(|d| d.is_finite());
+        // Vertical is 90 degrees, never −90.
+        let around = *reference.get_or_insert_with(|| near(first.unwrap_or(0.0), MIDDLE));
+        let series = |name: String, dashed, read: &dyn Fn(&Principal) -> f64| Series {
             name,
             points: over.with(&principal.iter().map(read).collect::<Vec<_>>()),
             colour,
             dashed,
         };
-        values.push(series(format!("{tensor}, larger"), |p| p.larger, false));
-        values.push(series(format!("{tensor}, smaller"), |p| p.smaller, true));
-        directions.push(series(tensor.to_owned(), |p| p.degrees, false));
-        deviators.push(series(tensor.to_owned(), Principal::deviator, false));
+        values.push(series(format!("{tensor}, larger"), false, &|p| p.larger));
+        values.push(series(format!("{tensor}, smaller"), true, &|p| p.smaller));
+        directions.push(series(tensor.to_owned(), false, &|p| {
+            near(p.degrees, around)
+        }));
+        deviators.push(series(tensor.to_owned(), false, &Principal::deviator));
     }
     Ok(vec![
         figure("Eigenvalues", over.label, "eigenvalue", &values),

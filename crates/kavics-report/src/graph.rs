@@ -239,37 +239,34 @@ fn draw_grains(svg: &mut String, grains: &Discs, states: &[&str], map: Map) {
     loose.write(svg, "grain loose", "");
 }
 
-/// Each side from the first to the last grain that touches it.
+/// Each side that grains touch, as far as the grains reach.
 fn draw_sides(svg: &mut String, grains: &Discs, lines: &Lines, map: Map) {
-    let present: HashSet<i64> = lines
-        .second
-        .iter()
-        .flatten()
-        .copied()
-        .filter(|id| *id < 0)
-        .collect();
-    let mut present: Vec<i64> = present.into_iter().collect();
-    present.sort_unstable();
+    let mut drawn = HashSet::new();
     let mut path = Path::default();
-    for side in present {
-        let rows = (0..lines.second.len()).filter(|&row| lines.second[row] == Some(side));
-        let feet = rows.filter_map(|row| Some((lines.ends(row, grains)?[1], row)));
-        let along = |(point, row): &((f64, f64), usize)| {
-            point.1 * lines.nx[*row] - point.0 * lines.ny[*row]
-        };
-        let feet: Vec<_> = feet.collect();
-        let order =
-            |a: &&((f64, f64), usize), b: &&((f64, f64), usize)| along(a).total_cmp(&along(b));
-        if let (Some(low), Some(high)) = (feet.iter().min_by(order), feet.iter().max_by(order)) {
-            let beyond = |end: &((f64, f64), usize), sign: f64| {
-                let reach = sign * lines.length[end.1];
-                let (x, y) = end.0;
-                map.point(x - reach * lines.ny[end.1], y + reach * lines.nx[end.1])
-            };
-            path.line(beyond(low, -1.0), beyond(high, 1.0));
+    for (row, second) in lines.second.iter().enumerate() {
+        let side = second.filter(|id| *id < 0);
+        if side.is_none_or(|side| !drawn.insert(side)) {
+            continue;
+        }
+        if let Some([_, foot]) = lines.ends(row, grains) {
+            let [from, to] = side_ends(grains, [lines.nx[row], lines.ny[row]], foot);
+            path.line(map.point(from.0, from.1), map.point(to.0, to.1));
         }
     }
     path.write(svg, "side", "");
+}
+
+/// The side through `foot` with normal `n`, from the first grain along it to the last.
+fn side_ends(grains: &Discs, n: [f64; 2], foot: (f64, f64)) -> [(f64, f64); 2] {
+    let along = |x: f64, y: f64| n[0] * y - n[1] * x;
+    let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+    for grain in 0..grains.x.len() {
+        let at = along(grains.x[grain], grains.y[grain]);
+        reach[0] = reach[0].min(at - grains.radius[grain]);
+        reach[1] = reach[1].max(at + grains.radius[grain]);
+    }
+    let start = along(foot.0, foot.1);
+    reach.map(|at| (foot.0 - (at - start) * n[1], foot.1 + (at - start) * n[0]))
 }
 
 struct Marked<'a> {
@@ -316,7 +313,7 @@ fn draw_contacts(svg: &mut String, grains: &Discs, lines: &Lines, marked: &Marke
     let widest = 0.2 * typical * marked.map.scale;
     idle.write(svg, "idle", &stroke(0.03 * typical * marked.map.scale));
     for (bin, (pressed, pulled)) in pressed.iter().zip(&pulled).enumerate() {
-        let width = stroke(widest * (bin as f64 + 0.6) / WIDTHS as f64);
+        let width = stroke(widest * (bin as f64 + 1.0) / WIDTHS as f64);
         pressed.write(svg, "press", &width);
         pulled.write(svg, "pull", &width);
     }

@@ -13,9 +13,17 @@ pub(crate) fn show(value: f64) -> String {
     } else if (1e-3..1e6).contains(&size) {
         plain(value, 5)
     } else {
-        scientific(value, 3)
+        scientific(value, 4)
     };
     text.replace('-', &MINUS.to_string())
+}
+
+/// Three significant digits, for a place of its own.
+pub(crate) fn brief(value: f64) -> String {
+    if value != 0.0 && value.is_finite() && !(1e-3..1e6).contains(&value.abs()) {
+        return scientific(value, 2).replace('-', &MINUS.to_string());
+    }
+    show(value)
 }
 
 /// `value` with `digits` significant digits, without zeros at the end.
@@ -57,6 +65,9 @@ pub(crate) fn tick(value: f64, step: f64) -> String {
     if largest != 0.0 && !(1e-3..1e6).contains(&largest.max(step)) {
         return scientific(value, 2).replace('-', &MINUS.to_string());
     }
+    if value == 0.0 && step < 1e-3 {
+        return "0".to_owned();
+    }
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     fixed(value, decimals)
 }
@@ -78,5 +89,6 @@ mod tests {
     fn nothing_is_minus_zero() {
         assert_eq!(fixed(-1e-9, 3), "0.000");
         assert_eq!(tick(-0.0, 0.5), "0.0");
+        assert_eq!(tick(0.0, 1e-14), "0");
     }
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::curves::{Group, groups};
 use crate::graph;
-use crate::number::{fixed, show};
+use crate::number::{brief, fixed, show};
 use crate::{Comparison, ReportError};
 
 /// Pictures of the contact graph, at most; and contacts in all of them together, so that the page stays small.
@@ -37,6 +37,7 @@ struct Page {
     groups: Vec<Group>,
     parts: Vec<PartsRow>,
     steps: Table,
+    sides: Table,
     events: Table,
     comparison: Option<Comparison>,
     compared: Vec<ComparedRow>,
@@ -104,6 +105,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         groups: groups(folder, &steps)?,
         parts: parts(&steps)?,
         steps: steps_table(&steps)?,
+        sides: sides_table(folder)?,
         events: events_table(&events)?,
         compared: comparison.as_ref().map(compared_rows).unwrap_or_default(),
         comparison,
@@ -118,7 +120,7 @@ fn tiles(record: &RunRecord, steps: &Columns) -> Result<Vec<Tile>, ReportError> 
         let values = steps.numbers(column)?;
         Ok(values
             .last()
-            .map_or_else(|| "–".to_owned(), |value| show(*value)))
+            .map_or_else(|| "–".to_owned(), |value| brief(*value)))
     };
     let residuals = steps.numbers("residual")?;
     let residual = residuals.into_iter().fold(0.0, f64::max);
@@ -130,7 +132,7 @@ fn tiles(record: &RunRecord, steps: &Columns) -> Result<Vec<Tile>, ReportError> 
         tile("load steps", steps.len().to_string()),
         tile("last load factor", last("load_factor")?),
         tile("bonds broken", last("broken")?),
-        tile("largest residual", show(residual)),
+        tile("largest residual", brief(residual)),
         tile("ledger error", last("ledger_error")?),
     ])
 }
@@ -300,6 +302,29 @@ fn steps_table(steps: &Columns) -> Result<Table, ReportError> {
     Ok(Table {
         names: ["step", "stage"].into_iter().chain(STEP_COLUMNS).collect(),
         rows: (0..steps.len()).map(row).collect(),
+        left_out: 0,
+    })
+}
+
+/// The sides at the last recorded load step.
+fn sides_table(folder: &ResultsFolder) -> Result<Table, ReportError> {
+    let Some(last) = folder.recorded_steps()?.pop() else {
+        return Ok(Table::default());
+    };
+    let sides = folder.sides(last)?;
+    let names = sides.texts("name")?;
+    let numbers = ["step", "ux", "uy", "rotation", "fx", "fy", "moment"];
+    let columns: Result<Vec<_>, _> = numbers.iter().map(|name| sides.numbers(name)).collect();
+    let columns = columns?;
+    let row = |row: usize| {
+        let values = columns.iter().map(|column| show(column[row]));
+        std::iter::once(names[row].to_owned())
+            .chain(values)
+            .collect()
+    };
+    Ok(Table {
+        names: ["side"].into_iter().chain(numbers).collect(),
+        rows: (0..sides.len()).map(row).collect(),
         left_out: 0,
     })
 }

@@ -6,13 +6,13 @@ use crate::number::{show, tick};
 
 const WIDTH: f64 = 400.0;
 const HEIGHT: f64 = 260.0;
-const LEFT: f64 = 66.0;
+const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
 /// Above this many points a series is a line alone.
-const MARKED: usize = 60;
+const MARKED: usize = 25;
 
 /// One line of a plot.
 #[derive(Clone, Debug)]

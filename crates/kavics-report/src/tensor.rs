@@ -12,7 +12,7 @@ const ISOTROPIC: f64 = 1e-9;
 pub(crate) struct Principal {
     pub(crate) larger: f64,
     pub(crate) smaller: f64,
-    /// Direction of the larger value, from the x axis, in (−90, 90]; NaN where both are the same.
+    /// Direction of the larger value, from the x axis, in [−90, 90]; NaN where both are the same.
     pub(crate) degrees: f64,
 }
 
@@ -22,9 +22,7 @@ impl Principal {
         let half = 0.5 * (xx - yy);
         let radius = half.hypot(xy);
         let isotropic = radius <= ISOTROPIC * mean.abs();
-        let turned = 0.5 * xy.atan2(half).to_degrees();
-        // −90 and 90 are the same direction; rounding must not make a curve jump between them.
-        let angle = if turned < -90.0 + 1e-6 { 90.0 } else { turned };
+        let angle = 0.5 * xy.atan2(half).to_degrees();
         Self {
             larger: mean + radius,
             smaller: mean - radius,
@@ -47,9 +45,21 @@ impl Principal {
     }
 }
 
+/// The same direction as `degrees`, at most a quarter turn from `reference`: −89 and 91 are one direction, and a
+/// curve must not jump between them.
+pub(crate) fn near(degrees: f64, reference: f64) -> f64 {
+    degrees - 180.0 * ((degrees - reference) / 180.0).round()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Principal;
+    use super::{Principal, near};
+
+    #[test]
+    fn a_direction_has_two_names() {
+        assert_eq!(near(-89.0, 90.0), 91.0);
+        assert_eq!(near(85.0, 90.0), 85.0);
+    }
 
     #[test]
     fn a_pure_shear_points_along_the_diagonal() {

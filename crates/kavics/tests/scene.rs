@@ -329,3 +329,33 @@ fn the_schema_names_every_table() {
         assert!(schema.contains(&format!("\"{table}\"")), "{table}");
     }
 }
+
+#[test]
+fn what_no_stage_applies_is_a_warning() {
+    let idle = "[[load]]\nname = \"idle\"\ngrains = { ids = [2] }\nforce = { x = 1 }\n";
+    let scene = parse(&format!(
+        "{THREE}{HELD}{}{idle}",
+        PRESSED.replace("factors", "apply = [\"press\"]\nfactors")
+    ));
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.contains("no stage applies `idle`"))
+    );
+}
+
+#[test]
+fn grains_that_nothing_holds_and_nothing_loads_are_counted() {
+    let text = THREE.replace("width = 4.0", "width = 9.0").replace(
+        "hexagonal]\nradius = 1.0\nrows = [2, 1]",
+        "listed]\nfile = \"apart.csv\"",
+    );
+    let scene = parse(&format!("{text}{HELD}{PRESSED}"));
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.starts_with("1 grain is neither held nor loaded"))
+    );
+}

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use kavics::scene::{Scene, SceneError};
 use proptest::prelude::*;
@@ -117,6 +118,42 @@ fn mutated(text: &str, changes: &[(usize, u8, usize)]) -> String {
     words.concat()
 }
 
+/// What is mutated: wrong scenes, and as often a full one that is right.
+static SEEDS: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let full = fs::read_to_string(folder().join("../scenes_right/full.toml")).unwrap();
+    let pair = |(_, text)| [text, full.clone()];
+    wrong_scenes().into_iter().flat_map(pair).collect()
+});
+
+/// Numbers that scenes rarely have.
+const NUMBERS: [&str; 20] = [
+    "0", "1", "2", "-1", "0.5", "1.5", "7", "1e-300", "1e300", "-1e300", "1e-9", "1e9", "\"1 mm\"",
+    "31", "32", "1e16", "1e30", "1e-30", "1e25", "1e-25",
+];
+
+/// A scene in which a few numbers are others.
+fn renumbered(text: &str, changes: &[(usize, usize)]) -> String {
+    let mut words: Vec<String> = text
+        .split_inclusive([' ', '\n', ','])
+        .map(str::to_owned)
+        .collect();
+    let is_number = |word: &str| {
+        let word = word.trim_start_matches('[');
+        word.starts_with(|c: char| c.is_ascii_digit())
+    };
+    let numbers: Vec<usize> = (0..words.len()).filter(|i| is_number(&words[*i])).collect();
+    for (place, number) in changes {
+        let Some(place) = numbers.get(place % numbers.len().max(1)) else {
+            break;
+        };
+        let word = &mut words[*place];
+        let start = if word.starts_with('[') { "[" } else { "" };
+        let end = word.split_off(word.len() - 1);
+        *word = format!("{start}{}{end}", NUMBERS[number % NUMBERS.len()]);
+    }
+    words.concat()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -125,12 +162,16 @@ proptest! {
         scene in 0_usize..1000,
         changes in prop::collection::vec((0_usize..10_000, any::<u8>(), 0_usize..1000), 1..4),
     ) {
-        let mut scenes = wrong_scenes();
-        let full = fs::read_to_string(folder().join("../scenes_right/full.toml")).unwrap();
-        for _ in 0..scenes.len() {
-            scenes.push((String::new(), full.clone()));
-        }
-        let text = mutated(&scenes[scene % scenes.len()].1, &changes);
+        let text = mutated(&SEEDS[scene % SEEDS.len()], &changes);
+        message(&text, "scene.toml");
+    }
+
+    #[test]
+    fn no_number_makes_a_panic(
+        scene in 0_usize..1000,
+        changes in prop::collection::vec((0_usize..10_000, 0_usize..1000), 1..4),
+    ) {
+        let text = renumbered(&SEEDS[scene % SEEDS.len()], &changes);
         message(&text, "scene.toml");
     }
 }

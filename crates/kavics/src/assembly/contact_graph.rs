@@ -88,7 +88,7 @@ const LIKELY: f64 = 1e-3;
 ///
 /// Two grains touch where their gap is at most `touching_tolerance`, and touching grains always have a site. A grain
 /// is joined to a present side where its gap is at most `reach` of that side or the tolerance, and its power cell has
-/// an edge on the side. All sides bound the power diagram, present or not. Lengths in `[length]`.
+/// an edge on the side within the grain's shadow. All sides bound the power diagram, present or not. Lengths in `[length]`.
 /// Bojtár & Bagi (1989): the common tangents are the dual graph; as power diagram after Gellatly & Finney (1982).
 pub fn contact_graph(
     grains: &PerGrain<Grain>,
@@ -195,9 +195,15 @@ impl Choice<'_> {
         let (grain, id) = (GrainId(edge.disc), SideId::from_index(edge.side as usize));
         let (Grain { centre, radius }, side) = (self.grains[grain], &self.sides[id]);
         let gap = side.distance(centre) - radius;
+        // A cell that meets the side only beside its grain's shadow gives no dual length there.
+        let shadow: f64 = edge
+            .parts
+            .iter()
+            .map(|part| part.clamp(-radius, radius))
+            .sum();
         let joined = side.present
             && gap <= self.reach[id].max(self.touching_tolerance)
-            && edge.parts[0] + edge.parts[1] > self.no_length;
+            && shadow > self.no_length;
         joined.then(|| Site {
             first: Partner::Grain(grain),
             second: Partner::Side(id),
@@ -224,7 +230,7 @@ impl Site {
     ) -> Contact {
         let g = self.cap(grains);
         let kept = match shaping.dual_length {
-            DualLength::Capped => self.edge_parts.map(|part| part.min(g).max(-g)),
+            DualLength::Capped => self.edge_parts.map(|part| part.clamp(-g, g)),
             DualLength::Full | DualLength::Number(_) => self.edge_parts,
         };
         let s = match shaping.dual_length {

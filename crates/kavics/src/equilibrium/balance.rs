@@ -19,10 +19,10 @@ pub enum Settled {
 
 /// Linear solves with one set of phases before the iteration is given up.
 const MOST_ITERATIONS: usize = 400;
-/// A secant iteration that falls slower than this goes on with the tangent.
-const SLOW: f64 = 0.7;
-/// A large factor is kept while the residual falls faster than this.
-const LAG: f64 = 0.3;
+/// With floppy modes held, a residual that falls slower than this says that the loads move one.
+const STUCK: f64 = 0.7;
+/// A secant iteration that falls slower than this goes on with the tangent, and with a new factor.
+const SLOW: f64 = 0.3;
 /// Weight of the proximal term that carries over a mechanism, as a share of the diagonal.
 const PROXIMAL: f64 = 1e-6;
 
@@ -64,33 +64,34 @@ impl System<'_> {
             let hopeless = history.len() > MOST_ITERATIONS
                 || !imbalance.largest.is_finite()
                 || iteration == Iteration::Tangent && history.is_hopeless();
-            let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > SLOW;
+            let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > STUCK;
             if hopeless || floppy {
-                if hopeless && !self.has_phases(configuration) {
+                if hopeless && !self.any_phases(configuration) {
                     return Err(not_converged(progress, &imbalance));
                 }
                 configuration.displacements = start;
                 let iteration = if floppy { Iteration::Secant } else { iteration };
                 return self.drift(configuration, action, iteration, progress);
             }
-            if falls > SLOW && history.len() > 3 {
+            if falls > SLOW && history.len() > 2 {
                 iteration = Iteration::Tangent;
             }
-            if falls > LAG {
+            if falls > SLOW {
                 self.factored = None;
             }
-            match self.solve(
+            let solved = self.solve(
                 configuration,
                 &imbalance.unbalanced,
                 iteration,
                 0.0,
                 progress,
-            ) {
-                Ok(step) => self.advance(configuration, &step),
-                Err(_) if !self.has_phases(configuration) => {
-                    return Err(not_converged(progress, &imbalance));
-                }
-                Err(_) => {
+            );
+            let phases = self.any_phases(configuration);
+            match solved {
+                Ok(step) if !phases || self.is_small(&step) => self.advance(configuration, &step),
+                Err(_) if !phases => return Err(not_converged(progress, &imbalance)),
+                // As good as a mechanism: the set of phases will change before anything moves so far.
+                Ok(_) | Err(_) => {
                     configuration.displacements = start;
                     return self.drift(configuration, action, iteration, progress);
                 }
@@ -186,7 +187,7 @@ impl System<'_> {
                 )
             })
             .map_err(|_| not_converged(progress, &imbalance))?;
-        if !self.has_phases(configuration) {
+        if !self.any_phases(configuration) {
             return Err(Failure::Mechanism {
                 grains: self.moving(&step),
             });
@@ -199,13 +200,9 @@ impl System<'_> {
     /// The grains that a step moves most, at most ten.
     fn moving(&self, step: &[f64]) -> Vec<GrainId> {
         let grains = self.assembly.grains.len();
-        let size = |body: usize| {
-            let components =
-                self.numbers[body].map(|number| number.map_or(0.0, |n| step[n as usize]));
-            let arm = self.moment_arm(BodyId::from_index(body));
-            Displacement::from_components(components).largest_length(arm)
-        };
-        let mut sizes: Vec<(f64, usize)> = (0..grains).map(|grain| (size(grain), grain)).collect();
+        let mut sizes: Vec<(f64, usize)> = (0..grains)
+            .map(|grain| (self.motion(step, grain), grain))
+            .collect();
         sizes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let most = sizes.first().map_or(0.0, |s| s.0);
         sizes
@@ -214,6 +211,19 @@ impl System<'_> {
             .filter(|s| s.0 > 0.1 * most)
             .map(|s| GrainId::from_index(s.1))
             .collect()
+    }
+
+    /// Whether no grain moves farther than the mean radius.
+    fn is_small(&self, step: &[f64]) -> bool {
+        let limit = self.assembly.mean_radius();
+        (0..self.assembly.grains.len()).all(|grain| self.motion(step, grain) < limit)
+    }
+
+    /// How far a step moves a body, rotations at its rim.
+    fn motion(&self, step: &[f64], body: usize) -> f64 {
+        let components = self.numbers[body].map(|number| number.map_or(0.0, |n| step[n as usize]));
+        Displacement::from_components(components)
+            .largest_length(self.moment_arm(BodyId::from_index(body)))
     }
 
     fn advance(&self, configuration: &mut Configuration, step: &[f64]) {

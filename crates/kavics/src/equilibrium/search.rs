@@ -15,8 +15,8 @@ use crate::ids::{ContactId, GrainId, Id};
 
 /// Violations this near to each other change together.
 const PHASE_TIES: f64 = 1e-6;
-/// Sets of phases that are tried before the search is given up.
-const MOST_SETS: usize = 4000;
+/// Sets of phases that are tried before the search is given up: so many, and so many more a contact with phases.
+const MOST_SETS: [usize; 2] = [1000, 4];
 /// Proximal steps in a row before a mechanism is called one.
 const MOST_DRIFTS: usize = 200;
 
@@ -33,6 +33,13 @@ impl System<'_> {
     ) -> Result<(), Failure> {
         let mut met: HashMap<u64, usize> = HashMap::new();
         let mut changed: HashMap<ContactId, usize> = HashMap::new();
+        let phased = configuration
+            .bonds
+            .values()
+            .iter()
+            .filter(|bond| self.has_phases(bond))
+            .count();
+        let most_sets = MOST_SETS[0] + MOST_SETS[1] * phased;
         let mut drifts = 0;
         let mut moves = !action.moved.is_empty();
         loop {
@@ -63,7 +70,7 @@ impl System<'_> {
                 return Err(chatter(&changed));
             };
             *visits += 1;
-            if met.len() > MOST_SETS {
+            if met.len() > most_sets {
                 return Err(chatter(&changed));
             }
             for &(contact, phase) in group {

@@ -217,11 +217,17 @@ impl<'a> System<'a> {
         }
     }
 
-    pub(super) fn has_phases(&self, configuration: &Configuration) -> bool {
+    /// Whether a contact opens, closes, sticks and slides.
+    pub(super) fn has_phases(&self, bond: &Bond) -> bool {
+        bond.law(self.properties).is_some_and(Law::has_phases)
+    }
+
+    /// Whether any contact does.
+    pub(super) fn any_phases(&self, configuration: &Configuration) -> bool {
         configuration
             .bonds
             .values()
             .iter()
-            .any(|bond| bond.law(self.properties).is_some_and(Law::has_phases))
+            .any(|bond| self.has_phases(bond))
     }
 }

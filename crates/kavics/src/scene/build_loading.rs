@@ -29,8 +29,11 @@ type Owners = BTreeMap<(BodyId, Freedom), Owner>;
 
 /// Supports, moves and loads on the grains and sides of an assembly.
 pub struct Loading<'a> {
+    /// What acts.
     pub plan: &'a LoadingPlan,
+    /// Which sides are present, and where they are free.
     pub contacts: &'a ContactsPlan,
+    /// On what it acts.
     pub assembly: &'a Assembly,
     /// Gap up to which a grain touches an edge of the box, `[length]`.
     pub tolerance: f64,

@@ -91,10 +91,7 @@ pub fn grains(file: &SceneFile, checker: &mut Checker) -> Option<GrainsPlan> {
                 "a box that is filled with grains needs a height",
                 "expected a length",
             )
-            .and(
-                &grains.span,
-                "no `count`: grains fall until the box is full",
-            ),
+            .and(&span, "no `count`: grains fall until the box is full"),
         );
         return None;
     }

@@ -134,14 +134,7 @@ fn cemented(
         strength,
         after_breakage: after_breakage?,
     };
-    if law.shear_hardening > 0.0 && law.shear_floor.is_none() && law.strength.tension.is_infinite()
-    {
-        checker.warn(format!(
-            "contact `{}` has shear_hardening but neither a limit of tension nor a shear_floor: its shear modulus may \
-             fall to zero under tension, which ends the run",
-            name.value
-        ));
-    }
+    warn_of_lost_shear(&name.value, &law, checker);
     let limits = file.strength.as_ref().and_then(|strength| {
         let StrengthFile { stress, force, .. } = &strength.value;
         stress.as_ref().or(force.as_ref())
@@ -157,6 +150,16 @@ fn cemented(
         span: name.span.clone(),
         tension_span: tension.map(|tension| tension.span.clone()),
     })
+}
+
+fn warn_of_lost_shear(name: &str, law: &Cemented, checker: &mut Checker) {
+    if law.shear_hardening > 0.0 && law.shear_floor.is_none() && law.strength.tension.is_infinite()
+    {
+        checker.warn(format!(
+            "contact `{name}` has shear_hardening but neither a limit of tension nor a shear_floor: its shear modulus may \
+             fall to zero under tension, which ends the run"
+        ));
+    }
 }
 
 fn cohesionless(

@@ -44,7 +44,16 @@ pub fn stages(file: &SceneFile, actions: &[Action], checker: &mut Checker) -> Op
         .enumerate()
         .map(|(number, table)| stage(number, table, actions, &mut last, checker))
         .collect();
-    stages.into_iter().collect()
+    let stages: Vec<Stage> = stages.into_iter().collect::<Option<_>>()?;
+    for (index, action) in actions.iter().enumerate() {
+        if !stages.iter().any(|stage| stage.actions.contains(&index)) {
+            checker.warn(format!(
+                "no stage applies `{}`: it stays at zero",
+                action.name
+            ));
+        }
+    }
+    Some(stages)
 }
 
 fn stage(

@@ -2,7 +2,9 @@
 
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
-use super::file_contacts::{LimitsFile, ScatterFile, StrengthFile};
+use super::file_contacts::{
+    LimitsFile, LognormalFile, ScatterFile, StrengthFile, UniformFile, WeibullFile,
+};
 use super::scatter::Scatter;
 use super::unit::Dimension;
 use super::value::{Number, Placed};
@@ -92,42 +94,51 @@ fn scatter(table: &Placed<ScatterFile>, checker: &mut Checker) -> Option<Scatter
         ),
     ];
     let kind = checker.exactly_one(&table.span, "the scatter of the strength", alternatives)?;
-    let mut positive = |default: f64, number: Option<&Number>, key: &str| {
-        checker.number_or(default, number, key, Dimension::Number, Bound::Positive)
-    };
     match kind {
-        Kind::Weibull => {
-            let file = &weibull.as_ref()?.value;
-            let shape = positive(1.0, Some(&file.shape), "shape");
-            let scale = positive(1.0, file.scale.as_ref(), "scale");
-            Some(Scatter::Weibull {
-                shape: shape?,
-                scale: scale?,
-            })
-        }
-        Kind::Lognormal => {
-            let file = &lognormal.as_ref()?.value;
-            let deviation = positive(1.0, Some(&file.deviation), "deviation");
-            let median = positive(1.0, file.median.as_ref(), "median");
-            Some(Scatter::Lognormal {
-                deviation: deviation?,
-                median: median?,
-            })
-        }
-        Kind::Uniform => {
-            let file = &uniform.as_ref()?.value;
-            let from = positive(1.0, Some(&file.from), "from");
-            let to = positive(1.0, Some(&file.to), "to");
-            let (from, to) = (from?, to?);
-            if from > to {
-                checker.push(Problem::at(
-                    &file.to.span,
-                    format!("the scatter runs backwards, from {from} to {to}"),
-                    format!("expected at least {from}"),
-                ));
-                return None;
-            }
-            Some(Scatter::Uniform { from, to })
-        }
+        Kind::Weibull => self::weibull(&weibull.as_ref()?.value, checker),
+        Kind::Uniform => self::uniform(&uniform.as_ref()?.value, checker),
+        Kind::Lognormal => self::lognormal(&lognormal.as_ref()?.value, checker),
     }
+}
+
+fn positive(
+    default: f64,
+    number: Option<&Number>,
+    key: &str,
+    checker: &mut Checker,
+) -> Option<f64> {
+    checker.number_or(default, number, key, Dimension::Number, Bound::Positive)
+}
+
+fn weibull(file: &WeibullFile, checker: &mut Checker) -> Option<Scatter> {
+    let shape = positive(1.0, Some(&file.shape), "shape", checker);
+    let scale = positive(1.0, file.scale.as_ref(), "scale", checker);
+    Some(Scatter::Weibull {
+        shape: shape?,
+        scale: scale?,
+    })
+}
+
+fn lognormal(file: &LognormalFile, checker: &mut Checker) -> Option<Scatter> {
+    let deviation = positive(1.0, Some(&file.deviation), "deviation", checker);
+    let median = positive(1.0, file.median.as_ref(), "median", checker);
+    Some(Scatter::Lognormal {
+        deviation: deviation?,
+        median: median?,
+    })
+}
+
+fn uniform(file: &UniformFile, checker: &mut Checker) -> Option<Scatter> {
+    let from = positive(1.0, Some(&file.from), "from", checker);
+    let to = positive(1.0, Some(&file.to), "to", checker);
+    let (from, to) = (from?, to?);
+    if from > to {
+        checker.push(Problem::at(
+            &file.to.span,
+            format!("the scatter runs backwards, from {from} to {to}"),
+            format!("expected at least {from}"),
+        ));
+        return None;
+    }
+    Some(Scatter::Uniform { from, to })
 }

@@ -17,18 +17,25 @@ pub enum Bound {
     NonNegative,
 }
 
+/// Largest number, and inverse of the smallest: products of a few of them neither overflow nor vanish.
+pub const LARGEST: f64 = 1e30;
+
 /// What has been found wrong, or worth a warning, so far.
 #[derive(Debug, Default)]
 pub struct Checker {
+    /// Mistakes.
     pub problems: Problems,
+    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
 impl Checker {
+    /// Adds a mistake.
     pub fn push(&mut self, problem: Problem) {
         self.problems.push(problem);
     }
 
+    /// Adds a warning.
     pub fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());
     }
@@ -88,9 +95,13 @@ impl Checker {
             _ if !value.is_finite() => "expected a finite number",
             Bound::Positive if value <= 0.0 => "expected a number above zero",
             Bound::NonNegative if value < 0.0 => "expected zero or a number above",
+            _ if value.abs() > LARGEST => "expected a number of at most 1e30",
+            _ if value != 0.0 && value.abs() < LARGEST.recip() => {
+                "expected a number of at least 1e-30"
+            }
             _ => return Some(value),
         };
-        let message = format!("`{key}` cannot be {value}");
+        let message = format!("`{key}` cannot be {value:?}");
         self.push(Problem::at(span, message, expected));
         None
     }

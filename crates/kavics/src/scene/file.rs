@@ -16,7 +16,7 @@ pub struct SceneFile {
     pub title: Option<String>,
     /// Where every random choice comes from; 0 when absent.
     pub seed: Option<Placed<i64>>,
-    /// Thickness out of the plane; 1 when absent [length].
+    /// Thickness out of the plane; 1 when absent `[length]`.
     pub thickness: Option<Number>,
     /// The container.
     #[serde(rename = "box")]
@@ -74,9 +74,9 @@ pub struct SceneFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BoxFile {
-    /// Width [length].
+    /// Width `[length]`.
     pub width: Option<Number>,
-    /// Height [length], or "fit": the box ends at the top of the highest grain.
+    /// Height `[length]`, or "fit": the box ends at the top of the highest grain.
     pub height: Option<Number>,
     /// Corners of a convex container: not available in this version.
     #[cfg_attr(feature = "schema", schemars(skip))]
@@ -107,7 +107,7 @@ pub struct GrainsFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LatticeFile {
-    /// Radius [length].
+    /// Radius `[length]`.
     pub radius: Number,
     /// Number of grains in each row from the bottom, or number of rows and length of the longest.
     pub rows: Placed<ListOr<i64, RowCountFile>>,
@@ -136,7 +136,7 @@ impl Described for RowCountFile {
 pub struct DroppedFile {
     /// Number of grains; until the box is full when absent.
     pub count: Option<Placed<i64>>,
-    /// Radius, or the limits between which it is uniform [length].
+    /// Radius, or the limits between which it is uniform `[length]`.
     pub radius: Option<Placed<ValueOr<RadiiFile>>>,
     /// Sieve curve, in place of a radius.
     #[serde(default, deserialize_with = "optional_table")]
@@ -150,9 +150,9 @@ pub struct DroppedFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RadiiFile {
-    /// Smallest radius [length].
+    /// Smallest radius `[length]`.
     pub from: Number,
-    /// Largest radius [length].
+    /// Largest radius `[length]`.
     pub to: Number,
 }
 
@@ -165,7 +165,7 @@ impl Described for RadiiFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SieveFile {
-    /// Diameters, growing [length].
+    /// Diameters, growing `[length]`.
     pub diameter: Placed<Vec<Number>>,
     /// Share of the mass with a smaller diameter, from 0 to 1.
     pub passing: Placed<Vec<Number>>,
@@ -203,9 +203,9 @@ pub struct ChoiceFile {
     pub edge: Option<Placed<String>>,
     /// Grains by id.
     pub ids: Option<Placed<Vec<Placed<i64>>>>,
-    /// Grains with their centre in a range of x [length].
+    /// Grains with their centre in a range of x `[length]`.
     pub x: Option<Placed<Vec<Number>>>,
-    /// Grains with their centre in a range of y [length].
+    /// Grains with their centre in a range of y `[length]`.
     pub y: Option<Placed<Vec<Number>>>,
     /// true: grains on the boundary of the assembly.
     pub boundary: Option<Placed<bool>>,
@@ -216,9 +216,9 @@ pub struct ChoiceFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WeightFile {
-    /// Density of the grains [mass/length^3].
+    /// Density of the grains `[mass/length³]`.
     pub density: Number,
-    /// Acceleration of gravity; 9.81 when absent [length/time^2].
+    /// Acceleration of gravity; 9.81 when absent `[length/time²]`.
     pub gravity: Option<Number>,
 }
 
@@ -234,11 +234,11 @@ pub struct MoveFile {
     /// Grains that move.
     #[serde(default, deserialize_with = "optional_table")]
     pub grains: Option<Placed<ChoiceFile>>,
-    /// Displacement to the right at factor 1 [length].
+    /// Displacement to the right at factor 1 `[length]`.
     pub x: Option<Number>,
-    /// Displacement upwards at factor 1 [length].
+    /// Displacement upwards at factor 1 `[length]`.
     pub y: Option<Number>,
-    /// Rotation at factor 1 [radian], or "free" beside a strain.
+    /// Rotation at factor 1 `[radian]`, or "free" beside a strain.
     pub rotation: Option<Number>,
     /// Affine motion of the grains about the centre of the box.
     #[serde(default, deserialize_with = "optional_table")]
@@ -269,9 +269,9 @@ pub struct LoadFile {
     pub name: Placed<String>,
     /// Edge of the box along which the load is distributed.
     pub edge: Option<Placed<String>>,
-    /// At the edge's start and end, positive along its outward normal [force/length].
+    /// At the edge's start and end, positive along its outward normal `[force/length]`.
     pub normal: Option<Placed<Vec<Number>>>,
-    /// At the edge's start and end, positive along the edge [force/length].
+    /// At the edge's start and end, positive along the edge `[force/length]`.
     pub shear: Option<Placed<Vec<Number>>>,
     /// Grains that each carry the force.
     #[serde(default, deserialize_with = "optional_table")]
@@ -288,11 +288,11 @@ pub struct LoadFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ForceFile {
-    /// To the right [force].
+    /// To the right `[force]`.
     pub x: Option<Number>,
-    /// Upwards [force].
+    /// Upwards `[force]`.
     pub y: Option<Number>,
-    /// Counter-clockwise [force*length].
+    /// Counter-clockwise `[force·length]`.
     pub moment: Option<Number>,
 }
 
@@ -360,9 +360,9 @@ pub struct MeasureFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowFile {
-    /// Grains with their centre in a range of x [length].
+    /// Grains with their centre in a range of x `[length]`.
     pub x: Option<Placed<Vec<Number>>>,
-    /// Grains with their centre in a range of y [length].
+    /// Grains with their centre in a range of y `[length]`.
     pub y: Option<Placed<Vec<Number>>>,
     /// Grains by id.
     pub ids: Option<Placed<Vec<Placed<i64>>>>,

@@ -85,13 +85,13 @@ pub struct CohesionlessFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StiffnessFile {
-    /// k = E*s, G*s, E*s^3/12 [force/length^3].
+    /// k = E*s, G*s, E*s^3/12 `[force/length³]`.
     #[serde(default, deserialize_with = "optional_table")]
     pub layer: Option<Placed<ModuliFile>>,
-    /// k = E*s/l, G*s/l, E*s^3/(12*l) [force/length^2].
+    /// k = E*s/l, G*s/l, E*s^3/(12*l) `[force/length²]`.
     #[serde(default, deserialize_with = "optional_table")]
     pub modulus: Option<Placed<ModuliFile>>,
-    /// The stiffnesses themselves [force/length], moment [force*length].
+    /// The stiffnesses themselves `[force/length]`, moment [force*length].
     #[serde(default, deserialize_with = "optional_table")]
     pub direct: Option<Placed<DirectFile>>,
 }
@@ -112,11 +112,11 @@ pub struct ModuliFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DirectFile {
-    /// Normal stiffness [force/length].
+    /// Normal stiffness `[force/length]`.
     pub normal: Number,
-    /// Shear stiffness [force/length].
+    /// Shear stiffness `[force/length]`.
     pub shear: Number,
-    /// Bending stiffness [force*length]; for cemented contacts.
+    /// Bending stiffness `[force·length]`; for cemented contacts.
     pub moment: Option<Number>,
 }
 
@@ -125,10 +125,10 @@ pub struct DirectFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StrengthFile {
-    /// Limits as stress over the dual edge [force/length^2].
+    /// Limits as stress over the dual edge `[force/length²]`.
     #[serde(default, deserialize_with = "optional_table")]
     pub stress: Option<Placed<LimitsFile>>,
-    /// Limits as force [force], bending as moment [force*length].
+    /// Limits as force `[force]`, bending as moment [force*length].
     #[serde(default, deserialize_with = "optional_table")]
     pub force: Option<Placed<LimitsFile>>,
     /// A factor on all limits, drawn for each contact.
@@ -222,9 +222,9 @@ pub struct ZoneFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RangesFile {
-    /// From and to [length].
+    /// From and to `[length]`.
     pub x: Option<Placed<Vec<Number>>>,
-    /// From and to [length].
+    /// From and to `[length]`.
     pub y: Option<Placed<Vec<Number>>>,
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::checker::LARGEST;
+
 /// Columns of a list of grains.
 const COLUMNS: [&str; 3] = ["x", "y", "radius"];
 
@@ -31,8 +33,7 @@ pub fn read_csv(path: &Path) -> Result<Vec<[f64; 3]>, String> {
                     COLUMNS[i]
                 )
             })?;
-            let right = row[i].is_finite() && (i != 2 || row[i] > 0.0);
-            if !right {
+            if !is_right(i, row[i]) {
                 return Err(wrong(&format!("line {line}"), i, row[i]));
             }
         }
@@ -46,14 +47,24 @@ fn missing(column: &str, header: &csv::StringRecord) -> String {
     format!("line 1: no column `{column}` among {}", names.join(", "))
 }
 
+/// Whether a column may have a value.
+fn is_right(column: usize, value: f64) -> bool {
+    let smallest = if column == 2 {
+        LARGEST.recip()
+    } else {
+        -LARGEST
+    };
+    (smallest..=LARGEST).contains(&value)
+}
+
 fn wrong(place: &str, column: usize, value: f64) -> String {
     let expected = if column == 2 {
-        "a positive number"
+        "a positive number up to 1e30"
     } else {
-        "a finite number"
+        "a number up to 1e30"
     };
     format!(
-        "{place}, column `{}`: {value} is not {expected}",
+        "{place}, column `{}`: {value:?} is not {expected}",
         COLUMNS[column]
     )
 }
@@ -65,7 +76,7 @@ pub fn check(rows: &[[f64; 3]]) -> Result<(), String> {
     }
     for (number, row) in rows.iter().enumerate() {
         for (column, value) in row.iter().enumerate() {
-            if !value.is_finite() || (column == 2 && *value <= 0.0) {
+            if !is_right(column, *value) {
                 return Err(wrong(&format!("row {}", number + 1), column, *value));
             }
         }

@@ -59,20 +59,7 @@ pub fn check(assembly: &Assembly, program: &Program, place: &Range<usize>, check
             leaves_motion(&motion, &grains, place, checker);
         }
     }
-    if !adrift.is_empty() {
-        adrift.sort_unstable();
-        checker.push(
-            Problem::at(
-                place,
-                format!(
-                    "nothing holds {}, which a load or weight acts on",
-                    named(&adrift)
-                ),
-                "expected a support for every piece that is loaded",
-            )
-            .help("these grains have no contact with a grain or side that is held"),
-        );
-    }
+    grains_adrift(adrift, place, checker);
     if rattlers > 0 {
         let grains = if rattlers == 1 {
             "grain is"
@@ -102,6 +89,24 @@ fn named(grains: &[GrainId]) -> String {
         more => format!(" and {more} more"),
     };
     format!("{word} {}{more}", told.join(", "))
+}
+
+fn grains_adrift(mut adrift: Vec<GrainId>, place: &Range<usize>, checker: &mut Checker) {
+    if adrift.is_empty() {
+        return;
+    }
+    adrift.sort_unstable();
+    checker.push(
+        Problem::at(
+            place,
+            format!(
+                "nothing holds {}, which a load or weight acts on",
+                named(&adrift)
+            ),
+            "expected a support for every piece that is loaded",
+        )
+        .help("these grains have no contact with a grain or side that is held"),
+    );
 }
 
 fn side_adrift(

@@ -292,7 +292,7 @@ mod tests {
         close("180 deg", Dimension::Angle, std::f64::consts::PI);
         close("0.1 rad", Dimension::Angle, 0.1);
         close("2 N·m/rad", Dimension::Moment, 2.0);
-        close("1e3", Dimension::Stress, 1e3);
+        close("1e3", Dimension::Number, 1e3);
         close("3 %", Dimension::Number, 0.03);
         close(" 7 kg·m^-3 ", Dimension::Density, 7.0);
     }
@@ -302,6 +302,10 @@ mod tests {
         assert_eq!(
             parse("30 GPa", Dimension::Length),
             Err(UnitError::WrongDimension(Some("a stress (force/length²)")))
+        );
+        assert_eq!(
+            parse("1e3", Dimension::Stress),
+            Err(UnitError::WrongDimension(Some("a number without unit")))
         );
         assert_eq!(
             parse("30 m/s", Dimension::Length),

@@ -11,7 +11,9 @@ use toml::Spanned;
 /// A value and where it stands in the scene file, in bytes.
 #[derive(Clone, Debug)]
 pub struct Placed<T> {
+    /// What is written.
     pub value: T,
+    /// First byte and the one after the last; of a table, its header.
     pub span: Range<usize>,
 }
 
@@ -72,7 +74,9 @@ where
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(untagged))]
 pub enum Quantity {
+    /// A plain number.
     Number(f64),
+    /// A number with a unit, or a word.
     Text(String),
 }
 
@@ -109,6 +113,7 @@ impl<'de> Deserialize<'de> for Quantity {
 
 /// What a table that may stand in place of a value is called in messages.
 pub trait Described {
+    /// What is expected there, with an example.
     const EXPECTED: &'static str;
 }
 
@@ -116,7 +121,9 @@ pub trait Described {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(untagged))]
 pub enum ValueOr<T> {
+    /// A quantity.
     Value(Quantity),
+    /// The table in its place.
     Table(T),
 }
 
@@ -155,7 +162,9 @@ impl<'de, T: Deserialize<'de> + Described> Deserialize<'de> for ValueOr<T> {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(untagged))]
 pub enum ListOr<V, T> {
+    /// A list.
     List(Vec<Placed<V>>),
+    /// The table in its place.
     Table(T),
 }
 

@@ -1,0 +1,292 @@
+//! Scenes run by the command, and what they leave behind.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use kavics_results::{Columns, ResultsFolder, RunState};
+
+/// A cemented block of 32 discs under vertical compression.
+const BLOCK: &str = r#"
+title = "Block of 32 discs"
+
+[box]
+width = 10.0
+height = 12.4
+
+[grains.hexagonal]
+radius = 1.0
+rows = [5, 4, 5, 4, 5, 4, 5]
+
+[contact.mortar.cemented]
+stiffness.layer = { normal = 3000.0, shear = 1650.0 }
+strength.stress = { tension = 30.0 }
+
+[[zone]]
+contact = "mortar"
+
+[[support]]
+grains = { edge = "bottom" }
+fix = ["y"]
+[[support]]
+grains = { ids = [2] }
+fix = ["x"]
+
+[[load]]
+name = "traffic"
+edge = "top"
+normal = [-30.0, -30.0]
+
+[[stage]]
+name = "compression"
+factors = [1.0, 1.2, 1.4]
+"#;
+
+/// The same with bonds so weak that the block falls apart.
+const WEAK: &str = "contact.mortar.cemented.strength.stress={ tension = 0.1, shear = 0.1 }";
+
+fn place_with(scene: &str) -> tempfile::TempDir {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    fs::write(place.path().join("block.toml"), scene).expect("room on the disk");
+    place
+}
+
+fn kavics(place: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::cargo_bin("kavics").expect("the command is built");
+    command.current_dir(place).args(arguments);
+    command.output().expect("the command runs")
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().expect("no signal")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).expect("a folder").flatten();
+    entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect()
+}
+
+#[test]
+fn a_run_leaves_the_files_of_the_contract_and_a_report() {
+    let place = place_with(BLOCK);
+    let output = kavics(place.path(), &["run", "block.toml"]);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let results = place.path().join("block.results");
+    let files = [
+        "actions.parquet",
+        "contacts",
+        "events.parquet",
+        "grains",
+        "log.ndjson",
+        "report.html",
+        "run.json",
+        "scene.toml",
+        "sides",
+        "steps.parquet",
+    ];
+    assert_eq!(names(&results), files.map(str::to_owned).into());
+    assert!(text(&output.stderr).ends_with("report: block.results/report.html\n"));
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn a_summary_fits_into_eighty_columns() {
+    let place = place_with(BLOCK);
+    let output = kavics(place.path(), &["run", "block.toml"]);
+    for line in text(&output.stderr).lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+}
+
+#[test]
+fn a_json_line_is_written_for_each_load_step() {
+    let place = place_with(BLOCK);
+    let output = kavics(place.path(), &["run", "block.toml", "--json"]);
+    let lines = text(&output.stdout);
+    let steps: Vec<serde_json::Value> = lines
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("a JSON object"))
+        .collect();
+    let factors: Vec<f64> = steps
+        .iter()
+        .filter_map(|step| step["load_factor"].as_f64())
+        .collect();
+    assert_eq!(factors, [1.0, 1.2, 1.4]);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_table() {
+    let place = place_with(BLOCK);
+    for threads in ["1", "2"] {
+        kavics(
+            place.path(),
+            &["run", "block.toml", "--threads", threads, "-o", threads],
+        );
+    }
+    for table in [
+        "steps.parquet",
+        "events.parquet",
+        "grains/000003.parquet",
+        "contacts/000003.parquet",
+    ] {
+        let [one, two] = ["1", "2"].map(|folder| fs::read(place.path().join(folder).join(table)));
+        assert_eq!(one.expect("a table"), two.expect("a table"), "{table}");
+    }
+}
+
+#[test]
+fn an_override_stands_in_the_scene_of_the_results() {
+    let place = place_with(BLOCK);
+    kavics(
+        place.path(),
+        &["run", "block.toml", "--set", "stage.0.factors=[2.0]"],
+    );
+    let results = ResultsFolder::open(&place.path().join("block.results")).expect("results");
+    assert!(
+        results
+            .scene()
+            .expect("a scene")
+            .contains("factors = [2.0]")
+    );
+    assert_eq!(
+        results
+            .steps()
+            .expect("steps")
+            .numbers("load_factor")
+            .expect("a column"),
+        [2.0]
+    );
+}
+
+#[test]
+fn a_wrong_scene_leaves_nothing_behind() {
+    let place = place_with(&BLOCK.replace("radius = 1.0", "radius = -1.0"));
+    let output = kavics(place.path(), &["run", "block.toml"]);
+    assert_eq!(status(&output), 2);
+    assert_eq!(names(place.path()), ["block.toml".to_owned()].into());
+}
+
+#[test]
+fn finished_results_are_replaced_by_force_alone() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let again = ["run", "block.toml", "--set", "stage.0.factors=[2.0]"];
+    assert_eq!(status(&kavics(place.path(), &again)), 2);
+    let steps = || Columns::read(&place.path().join("block.results/steps.parquet")).expect("steps");
+    assert_eq!(steps().len(), 3);
+    assert_eq!(
+        status(&kavics(place.path(), &[&again[..], &["--force"]].concat())),
+        0
+    );
+    assert_eq!(steps().len(), 1);
+}
+
+#[test]
+fn without_equilibrium_the_results_so_far_are_kept() {
+    let place = place_with(BLOCK);
+    let output = kavics(place.path(), &["run", "block.toml", "--set", WEAK]);
+    assert_eq!(status(&output), 3, "{}", text(&output.stderr));
+    let results = place.path().join("block.results");
+    let record = ResultsFolder::open(&results).and_then(|folder| folder.record());
+    assert_eq!(record.expect("run.json").state, RunState::NoEquilibrium);
+    assert!(results.join("report.html").is_file());
+    assert!(
+        text(&output.stderr).contains("the results in block.results are valid up to load step")
+    );
+}
+
+#[test]
+fn measuring_again_in_the_same_window_gives_the_same_table() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let output = kavics(
+        place.path(),
+        &["measure", "block.results", "-o", "again.parquet"],
+    );
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let read = |name: &str| fs::read(place.path().join(name)).expect("a table");
+    assert_eq!(read("again.parquet"), read("block.results/steps.parquet"));
+}
+
+#[test]
+fn measuring_in_another_window_changes_its_area() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    for (window, file) in [
+        ("all", "all.parquet"),
+        ("{ ids = [14, 15] }", "two.parquet"),
+    ] {
+        let output = kavics(
+            place.path(),
+            &["measure", "block.results", "--window", window, "-o", file],
+        );
+        assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    }
+    let area = |name: &str| {
+        let table = Columns::read(&place.path().join(name)).expect("a table");
+        table.numbers("window_area").expect("a column")[0]
+    };
+    // The cells of all grains tile the box, 10 by 12.4.
+    assert!((area("all.parquet") - 124.0).abs() < 1e-9);
+    assert!(area("two.parquet") < 10.0);
+}
+
+#[test]
+fn iterates_are_written_when_asked_for() {
+    let place = place_with(BLOCK);
+    let every = "measure.every=iteration";
+    let output = kavics(place.path(), &["run", "block.toml", "--set", every]);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let path = place.path().join("block.results/iterations.parquet");
+    let iterates = Columns::read(&path).expect("a table");
+    let steps = Columns::read(&place.path().join("block.results/steps.parquet")).expect("a table");
+    let solves: f64 = steps.numbers("iterations").expect("a column").iter().sum();
+    assert_eq!(iterates.len() as f64, solves);
+    assert!(iterates.integers("iteration").is_ok());
+}
+
+#[test]
+fn check_says_what_would_run() {
+    let place = place_with(BLOCK);
+    let output = kavics(place.path(), &["check", "block.toml"]);
+    insta::assert_snapshot!(text(&output.stdout));
+    assert_eq!(names(place.path()), ["block.toml".to_owned()].into());
+}
+
+#[test]
+fn a_written_pack_can_be_listed() {
+    let place = place_with(BLOCK);
+    for file in ["pack.csv", "pack.parquet"] {
+        let output = kavics(place.path(), &["pack", "block.toml", "-o", file]);
+        assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+        let listed = BLOCK.replace(
+            "[grains.hexagonal]\nradius = 1.0\nrows = [5, 4, 5, 4, 5, 4, 5]",
+            &format!("[grains.listed]\nfile = \"{file}\""),
+        );
+        fs::write(place.path().join("listed.toml"), listed).expect("room on the disk");
+        let run = kavics(place.path(), &["run", "listed.toml", "--force"]);
+        assert_eq!(status(&run), 0, "{}", text(&run.stderr));
+        let measured = kavics(place.path(), &["measure", "listed.results"]);
+        assert_eq!(status(&measured), 0, "{}", text(&measured.stderr));
+    }
+}
+
+#[test]
+fn a_compared_table_stands_in_the_summary() {
+    let place = place_with(&format!("{BLOCK}\n[compare]\nfile = \"table.csv\"\n"));
+    let table = "# made up\nload_factor,stress_yy\n1.2,-36.0\n";
+    fs::write(place.path().join("table.csv"), table).expect("room on the disk");
+    let output = kavics(place.path(), &["run", "block.toml"]);
+    let summary = text(&output.stderr);
+    assert_eq!(status(&output), 0, "{summary}");
+    assert!(summary.contains("# made up"), "{summary}");
+    assert!(summary.contains("-36.000000"), "{summary}");
+}
