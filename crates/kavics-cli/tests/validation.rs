@@ -24,13 +24,17 @@ cases!(
     chain_cantilever,
     contact_cycles,
     cut_identities,
+    dropped_packing,
     friction_limits,
     hexagonal_lattice,
+    iteration_order,
     patch_test,
     rigid_motion,
     square_lattice,
     tessellation,
     three_discs,
+    unloading,
+    voigt_bound,
 );
 
 #[test]

@@ -22,6 +22,7 @@ pub fn value(name: &str, csv: &str, key: &str) -> f64 {
         "contacts_beyond_two_each" => contacts_beyond_two_each(&discs, width),
         "unstable" => unstable(&discs, width),
         "solid_share" => solid_share(&discs, width),
+        "sum_of_bits" => sum_of_bits(&discs),
         "sieve_error" => sieve_error(&discs, &key[1..]) * discs.len() as f64,
         other => panic!("no property is called {other}"),
     }
@@ -178,4 +179,13 @@ fn sieve_error(discs: &[Disc], curve: &[f64]) -> f64 {
         (below.map(mass).sum::<f64>() / total - sieve[1]).abs()
     });
     errors.fold(0.0, f64::max)
+}
+
+/// A number that changes with any bit of any grain.
+fn sum_of_bits(discs: &[Disc]) -> f64 {
+    let bits = discs.iter().flat_map(|d| [d.x, d.y, d.radius]);
+    let sum = bits.fold(0_u64, |sum, value| {
+        sum.wrapping_mul(31).wrapping_add(value.to_bits())
+    });
+    (sum >> 12) as f64
 }

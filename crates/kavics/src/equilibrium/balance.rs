@@ -101,7 +101,7 @@ impl System<'_> {
 
     /// Brings the moved freedoms to their values; the loads that the move causes at the other freedoms are those
     /// of the linear contacts, and the first linear solve answers them.
-    fn predict(&self, configuration: &mut Configuration, action: &Action) -> PerBody<Load> {
+    fn predict(&mut self, configuration: &mut Configuration, action: &Action) -> PerBody<Load> {
         self.respond(configuration);
         for &(body, freedom, value) in &action.moved {
             *configuration.displacements[body].component_mut(freedom) = value;
@@ -115,7 +115,9 @@ impl System<'_> {
                 let v = frame.relative_displacement(u[frame.first], u[frame.second]);
                 linear_force(bond, v, &self.stiffness_of(bond, Iteration::Secant))
             });
-        self.imbalance_of(forces, &action.loads).unbalanced
+        let imbalance = self.imbalance_of(forces, &action.loads);
+        self.moved_force = imbalance.force;
+        imbalance.unbalanced
     }
 
     /// Whether nothing acts and what is left of the forces is rounding.

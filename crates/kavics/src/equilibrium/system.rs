@@ -30,6 +30,8 @@ pub struct System<'a> {
     pub set_aside: Vec<bool>,
     /// Largest contact force of any equilibrium so far: below its rounding there is no force.
     pub largest_force: f64,
+    /// Largest contact force if only the moved bodies moved, `[force]`.
+    pub moved_force: f64,
 }
 
 /// Unbalanced loads and the scale to see them by.
@@ -103,6 +105,7 @@ impl<'a> System<'a> {
             general: None,
             factored: None,
             largest_force: 0.0,
+            moved_force: 0.0,
         }
     }
 
@@ -118,7 +121,8 @@ impl<'a> System<'a> {
 
     /// Below this a force is rounding.
     pub fn noise(&self) -> f64 {
-        1e-12 * self.largest_force
+        // A rigid motion leaves the rounding of its displacements.
+        (1e-12 * self.largest_force).max(1e-14 * self.moved_force)
     }
 
     /// Finds the pieces that nothing holds and nothing loads, and leaves them out.

@@ -1,0 +1,219 @@
+//! Every scene of `scenes/`, run by the command, shows what it is for.
+
+mod support;
+
+use assert_cmd::Command;
+use support::tables::Tables;
+use support::{Run, workspace};
+
+fn done(name: &str) -> Run {
+    let run = Run::scene(name);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    run
+}
+
+/// Force on a side in each load step.
+fn side_force(run: &Run, side: usize, component: fn((f64, f64)) -> f64) -> Vec<f64> {
+    (1..=run.last_step())
+        .map(|step| {
+            let force = Tables::read(run, step).sides[side].0;
+            component((force.0, force.1))
+        })
+        .collect()
+}
+
+const LEFT: usize = 0;
+const TOP: usize = 3;
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a, b| b.abs().max(a))
+}
+
+/// Two straight segments through the origin: before and after the lower contact breaks.
+#[test]
+fn three_discs_weaken_once_and_return_to_the_origin() {
+    let run = done("three-discs.toml");
+    let factors = run.steps("load_factor");
+    let compliance: Vec<f64> = (1..=7)
+        .map(|step| Tables::read(&run, step).grains[2].translation.1 / factors[step - 1])
+        .collect();
+    let same = |a: usize, b: usize| (compliance[a] / compliance[b] - 1.0).abs() < 1e-12;
+    assert!(same(0, 1) && same(2, 3) && same(2, 4) && same(2, 6));
+    assert!(compliance[2] < 2.0 * compliance[1]);
+    assert_eq!(run.steps("broken"), [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    let unloaded = &Tables::read(&run, 6).grains[2];
+    assert!(unloaded.translation.length() < 1e-14);
+}
+
+/// Statics fixes the mean vertical stress, whatever breaks.
+#[test]
+fn block_32_keeps_its_vertical_stress_and_its_symmetry() {
+    let run = done("block-32.toml");
+    let (factors, stress) = (run.steps("load_factor"), run.steps("stress_yy"));
+    for (factor, stress_yy) in factors.iter().zip(&stress) {
+        assert!((stress_yy / factor / stress[0] - 1.0).abs() < 1e-9);
+    }
+    let last = Tables::read(&run, 5);
+    let mirrored = |x: f64, y: f64| {
+        let at =
+            |c: &&support::tables::ContactRow| (c.point.0 - (10.0 - x)).hypot(c.point.1 - y) < 1e-9;
+        last.contacts.iter().find(at).expect("a mirror image")
+    };
+    for contact in &last.contacts {
+        let image = mirrored(contact.point.0, contact.point.1);
+        assert_eq!(contact.state, image.state);
+        assert!((contact.normal_force - image.normal_force).abs() < 1e-8 * last.largest_force());
+    }
+    let largest_motion = last.grains.iter().map(|g| g.translation.length());
+    assert!(largest_motion.fold(0.0, f64::max) < 0.01);
+    let events = run.table("events", 0).expect("events");
+    let iterations = events.numbers("iteration").expect("iterations");
+    assert_eq!(iterations.len(), 2);
+    assert_eq!(iterations[0], iterations[1], "no cascade");
+    assert!(run.stderr.contains("reconstruction"));
+}
+
+#[test]
+fn cantilever_breaks_at_the_root() {
+    let run = done("cantilever.toml");
+    assert_eq!(run.steps("broken").last(), Some(&1.0));
+    assert_eq!(
+        Tables::read(&run, run.last_step()).contacts[0].state,
+        "closed"
+    );
+}
+
+#[test]
+fn brazilian_disc_splits_along_the_loaded_line() {
+    let run = done("brazilian.toml");
+    let first = run.steps("broken").iter().position(|broken| *broken > 0.0);
+    let events = run.table("events", 0).expect("events");
+    let mode = events.texts("mode").expect("modes");
+    assert!(first.is_some() && mode[0] == "tension");
+    let last = Tables::read(&run, run.last_step());
+    let broken: Vec<f64> = last
+        .contacts
+        .iter()
+        .filter(|c| c.state == "broken")
+        .map(|c| (c.point.0 - 29.0).abs())
+        .collect();
+    let near = broken.iter().filter(|distance| **distance < 10.0).count();
+    assert!(2 * near > broken.len(), "{near} of {}", broken.len());
+}
+
+#[test]
+fn tension_ends_with_two_pieces() {
+    let run = done("tension.toml");
+    let force = side_force(&run, TOP, |f| f.1);
+    assert!(largest(&force) > 0.0);
+    assert!(force.last().unwrap().abs() < 1e-6 * largest(&force));
+    let events = run.table("events", 0).expect("events");
+    assert!(events.texts("kind").expect("kinds").contains(&"broke"));
+}
+
+#[test]
+fn shear_breaks_contacts_under_a_constant_weight() {
+    let run = done("shear.toml");
+    assert!(*run.steps("broken").last().unwrap() > 5.0);
+    let vertical = side_force(&run, TOP, |f| f.1);
+    assert!(vertical.iter().all(|force| (force + 10.0).abs() < 1e-6));
+    let drag = side_force(&run, TOP, |f| f.0);
+    assert!(largest(&drag) > 1.0);
+}
+
+#[test]
+fn biaxial_compression_passes_its_peak_under_constant_cell_pressure() {
+    let run = done("biaxial.toml");
+    let cell = side_force(&run, LEFT, |f| f.0);
+    assert!(cell.iter().all(|force| (force - 30.0).abs() < 1e-6));
+    let lid = side_force(&run, TOP, |f| f.1);
+    assert!(lid.last().unwrap().abs() < 0.75 * largest(&lid));
+}
+
+/// The stress at rest: sides that do not yield carry less than the lid.
+#[test]
+fn oedometer_presses_on_its_sides() {
+    let run = done("oedometer.toml");
+    let (xx, yy) = (run.steps("stress_xx"), run.steps("stress_yy"));
+    for (xx, yy) in xx.iter().zip(yy) {
+        assert!(yy < 0.0 && *xx < 0.0 && xx / yy < 1.0);
+    }
+}
+
+#[test]
+fn patch_is_in_balance_in_an_affine_motion() {
+    let run = done("patch.toml");
+    let residual = run.steps("residual");
+    assert!(residual.iter().all(|residual| *residual < 1e-11));
+    let free = Tables::read(&run, 1);
+    let free = free.grains.iter().filter(|grain| grain.state == "free");
+    assert!(free.count() > 50);
+}
+
+#[test]
+fn dropped_1000_crumbles() {
+    let arguments = ["--set", "record.every=1"];
+    let scene = workspace().join("scenes/dropped-1000.toml");
+    let run = Run::of("run", &scene, &arguments);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let broken = run.steps("broken");
+    assert_eq!(broken.len(), 60);
+    assert!(broken[59] >= 100.0, "{} contacts broke", broken[59]);
+    let first = broken.iter().position(|count| *count > 0.0).unwrap() + 1;
+    assert!(
+        (15..=60).contains(&(60 / first)),
+        "first break at step {first}"
+    );
+    let force = side_force(&run, 1, |f| f.0);
+    assert!(force[59].abs() < 0.5 * largest(&force));
+    assert!(broken[59] > broken[first]);
+    let last = Tables::read(&run, 60);
+    let at_sides = last.contacts.iter().filter(|c| c.second.is_none());
+    assert!(at_sides.clone().count() > 50);
+    assert!(at_sides.clone().all(|c| c.state == "intact"));
+}
+
+#[test]
+fn sandbox_opens_and_slides() {
+    let run = done("sandbox.toml");
+    let last = Tables::read(&run, 10);
+    let count = |state: &str| last.contacts.iter().filter(|c| c.state == state).count();
+    assert!(count("open") >= 15, "{} open", count("open"));
+    assert!(count("sliding") >= 1);
+    let weight: f64 = last.grains.iter().map(|g| -g.force.1).sum();
+    let floor = last.sides[2].0.1 + last.sides[0].0.1 + last.sides[1].0.1;
+    assert!((weight / (114.0 * std::f64::consts::PI) - 1.0).abs() < 1e-9);
+    assert!((floor + weight).abs() < 1e-6 * weight || (floor - weight).abs() < 1e-6 * weight);
+}
+
+/// Ten times stiffer in shear: an equilibrium, or a clear word that there is none.
+#[test]
+fn a_stiffer_sandbox_is_honest() {
+    let scene = workspace().join("scenes/sandbox.toml");
+    for shear in ["100.0", "500.0"] {
+        let set = format!("contact.sand.cohesionless.stiffness.direct.shear={shear}");
+        let run = Run::of("run", &scene, &["--set", &set]);
+        match run.status {
+            0 => assert_eq!(run.steps("load_factor").last(), Some(&1.0)),
+            3 => assert!(run.stderr.contains("beyond load factor"), "{}", run.stderr),
+            other => panic!("{shear}: status {other}\n{}", run.stderr),
+        }
+    }
+}
+
+#[test]
+fn sandbox_dropped_says_why_it_ends() {
+    let run = Run::scene("sandbox-dropped.toml");
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    assert!(run.stderr.contains("beyond load factor"));
+    assert!(run.stderr.contains("no friction"));
+    assert!(run.last_step() >= 2);
+}
+
+/// Timed, not run, by hand.
+#[test]
+fn the_benchmark_is_a_right_scene() {
+    let mut command = Command::cargo_bin("kavics").expect("the command");
+    let scene = workspace().join("scenes/bench/hexagonal-100k.toml");
+    command.arg("check").arg(scene).assert().success();
+}
