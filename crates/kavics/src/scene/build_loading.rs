@@ -5,13 +5,13 @@ use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use super::check_contacts::{ContactsPlan, FREEDOMS, SIDES};
-use super::check_loading::{
-    LoadKind, LoadPlan, LoadingPlan, MotionPlan, MovePlan, TargetPlan, WeightPlan,
-};
 use super::checker::Checker;
 use super::choose::choose;
 use super::diagnostic::{Problem, short};
 use super::edge_load::edge_loads;
+use super::loading_plan::{
+    LoadKind, LoadPlan, LoadingPlan, MotionPlan, MovePlan, TargetPlan, WeightPlan,
+};
 use crate::assembly::{Assembly, Grain, Partner, envelope};
 use crate::equilibrium::{Freedom, Load};
 use crate::geometry::Vector;

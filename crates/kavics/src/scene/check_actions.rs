@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use super::check_choice::choice;
 use super::check_contacts::{FREEDOMS, SIDES};
-use super::check_loading::{LoadKind, LoadPlan, MotionPlan, MovePlan, TargetPlan, choice};
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{ChoiceFile, ForceFile, LoadFile, MoveFile, StrainFile};
+use super::loading_plan::{LoadKind, LoadPlan, MotionPlan, MovePlan, TargetPlan};
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity};
 use crate::equilibrium::{Freedom, Load};

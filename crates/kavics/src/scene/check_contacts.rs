@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use super::check_property::{self, PropertyPlan};
 use super::checker::{Bound, Checker};
-use super::diagnostic::{Problem, either, likely};
+use super::diagnostic::Problem;
 use super::file::SceneFile;
 use super::file_contacts::{RangesFile, SideFile, ZoneFile};
 use super::unit::Dimension;
 use super::value::{Number, Placed};
 use crate::assembly::Between;
 use crate::equilibrium::Freedom;
-use crate::ids::{Id, PerProperty, PropertyId};
+use crate::ids::{PerProperty, PropertyId};
 
 /// Contacts, their properties and where they hold.
 #[derive(Clone, Debug)]
@@ -163,34 +163,9 @@ fn first_property(file: &SceneFile) -> Range<usize> {
     first.map_or(0..0, |(name, _)| name.span.clone())
 }
 
-/// The property with a name.
-pub fn property(
-    name: &Placed<String>,
-    names: &[&str],
-    checker: &mut Checker,
-) -> Option<PropertyId> {
-    if let Some(index) = names.iter().position(|known| *known == name.value) {
-        return Some(PropertyId::from_index(index));
-    }
-    let known = if names.is_empty() {
-        "expected the name of a `[contact.NAME.…]`".to_owned()
-    } else {
-        format!("expected {}", either(names.iter().copied()))
-    };
-    checker.push(
-        Problem::at(
-            &name.span,
-            format!("no contact property is called `{}`", name.value),
-            known,
-        )
-        .suggest(likely(&name.value, names.iter().copied())),
-    );
-    None
-}
-
 fn zone(table: &Placed<ZoneFile>, names: &[&str], checker: &mut Checker) -> Option<ZonePlan> {
     let file = &table.value;
-    let property = property(&file.contact, names, checker);
+    let property = check_property::named(&file.contact, names, checker);
     let place = match (&file.strip, &file.share) {
         (None, None) => Some(ZonePlace::Everywhere),
         (Some(strip), None) => ranges(strip, checker).map(ZonePlace::Strip),
@@ -271,7 +246,7 @@ fn sides(file: &SceneFile, names: &[&str], checker: &mut Checker) -> Option<[Opt
 
 fn side(table: &Placed<SideFile>, names: &[&str], checker: &mut Checker) -> Option<SidePlan> {
     let file = &table.value;
-    let property = property(&file.contact, names, checker);
+    let property = check_property::named(&file.contact, names, checker);
     let (number, non_negative) = (Dimension::Number, Bound::NonNegative);
     let reach = checker.number_or(0.0, file.reach.as_ref(), "reach", number, non_negative);
     let free = file.free.as_deref().unwrap_or_default();

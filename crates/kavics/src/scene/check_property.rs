@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::check_contacts;
 use super::check_strength;
 use super::checker::{Bound, Checker};
-use super::diagnostic::Problem;
+use super::diagnostic::{Problem, either, likely};
 use super::file::SceneFile;
 use super::file_contacts::{
     CementedFile, CohesionlessFile, DirectFile, ModuliFile, PropertyFile, StiffnessFile,
@@ -31,6 +30,27 @@ pub struct PropertyPlan {
     pub span: Range<usize>,
     /// Where its limit of tension stands in the file.
     pub tension_span: Option<Range<usize>>,
+}
+
+/// The property with a name.
+pub fn named(name: &Placed<String>, names: &[&str], checker: &mut Checker) -> Option<PropertyId> {
+    if let Some(index) = names.iter().position(|known| *known == name.value) {
+        return Some(PropertyId::from_index(index));
+    }
+    let known = if names.is_empty() {
+        "expected the name of a `[contact.NAME.…]`".to_owned()
+    } else {
+        format!("expected {}", either(names.iter().copied()))
+    };
+    checker.push(
+        Problem::at(
+            &name.span,
+            format!("no contact property is called `{}`", name.value),
+            known,
+        )
+        .suggest(likely(&name.value, names.iter().copied())),
+    );
+    None
 }
 
 /// All contact properties.
@@ -119,9 +139,7 @@ fn cemented(
             check_strength::strength(table, checker)
         });
     let after_breakage = match &file.after_breakage {
-        Some(word) if word.value != "void" => {
-            check_contacts::property(word, names, checker).map(Some)
-        }
+        Some(word) if word.value != "void" => named(word, names, checker).map(Some),
         _ => Some(None),
     };
     let (strength, scatter) = strength?;

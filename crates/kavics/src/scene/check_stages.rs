@@ -1,9 +1,9 @@
 //! Checks of the stages: which actions take which factors.
 
-use super::check_loading::LoadingPlan;
 use super::checker::{Bound, Checker};
 use super::diagnostic::{Problem, either, likely};
 use super::file::{SceneFile, SeriesFile, StageFile};
+use super::loading_plan::LoadingPlan;
 use super::unit::Dimension;
 use super::value::{ListOr, Number, Placed};
 use crate::loading::{Action, Stage};

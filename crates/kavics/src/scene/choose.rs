@@ -1,8 +1,8 @@
 //! Choices of grains, found among the placed grains.
 
-use super::check_loading::{ChoiceKind, ChoicePlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
+use super::loading_plan::{ChoiceKind, ChoicePlan};
 use super::value::Placed;
 use crate::assembly::{Assembly, Grain};
 use crate::geometry::Vector;
