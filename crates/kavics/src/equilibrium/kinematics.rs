@@ -11,7 +11,7 @@
 //! Small displacements: a frame is that of the undeformed assembly.
 
 use super::{Displacement, Freedom, Load};
-use crate::assembly::{Assembly, Contact};
+use crate::assembly::{Assembly, Contact, Grain};
 use crate::contact_law::{ContactForce, Matrix, RelativeDisplacement};
 use crate::geometry::Vector;
 use crate::ids::BodyId;
@@ -245,6 +245,31 @@ impl ContactFrame {
             [0.0, 0.0, 1.0],
         ]
     }
+}
+
+/// Where a contact is and how it points in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Unit normal n from the first body to the second.
+    pub normal: Vector,
+    /// The point where the contact force acts, `[length]`.
+    pub point: Vector,
+    /// Branch length l, `[length]`.
+    pub branch_length: f64,
+}
+
+/// Where a contact is once its bodies are displaced: where it was, as displacements are small.
+pub fn contact_place(contact: &Contact, _first: Displacement, _second: Displacement) -> Place {
+    Place {
+        normal: contact.normal,
+        point: contact.point,
+        branch_length: contact.branch_length,
+    }
+}
+
+/// Where a grain's centre is once it is displaced: where it was, as displacements are small.
+pub fn centre(grain: &Grain, _displacement: Displacement) -> Vector {
+    grain.centre
 }
 
 /// Aᵀ·k·B.

@@ -15,7 +15,7 @@ mod sparsity;
 pub(crate) mod system;
 
 pub use error::SolveError;
-pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS};
+pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
 
 use crate::contact_law::{ContactForce, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};

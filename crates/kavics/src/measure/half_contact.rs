@@ -3,7 +3,7 @@
 //! A contact between two grains of the window is met twice, one that leaves the window once, one with a side once.
 
 use crate::assembly::{Contact, Partner};
-use crate::equilibrium::ContactState;
+use crate::equilibrium::{ContactState, Place};
 use crate::geometry::Vector;
 use crate::ids::GrainId;
 use crate::measure::{Snapshot, Window};
@@ -65,22 +65,22 @@ pub(super) fn half_contacts<'a>(
 pub(super) fn all_half_contacts<'a>(
     snapshot: &Snapshot<'a>,
 ) -> impl Iterator<Item = HalfContact> + use<'a> {
-    let assembly = snapshot.assembly;
-    let contacts = assembly.contacts.values().iter();
+    let snapshot = *snapshot;
+    let contacts = snapshot.assembly.contacts.values().iter();
     let active = contacts
         .zip(snapshot.state.contacts.values())
         .filter(|(_, state)| state.is_active());
     active
-        .flat_map(|(contact, state)| halves(contact, state))
+        .flat_map(move |(contact, state)| halves(contact, snapshot.place(contact), state))
         .flatten()
         .map(move |mut half| {
-            half.lever = half.lever - assembly.grains[half.grain].centre;
+            half.lever = half.lever - snapshot.centre(half.grain);
             half
         })
 }
 
 /// Both ends of a contact, the lever still the contact point itself; none for a side.
-fn halves(contact: &Contact, state: &ContactState) -> [Option<HalfContact>; 2] {
+fn halves(contact: &Contact, place: Place, state: &ContactState) -> [Option<HalfContact>; 2] {
     let half = |own: Partner, partner: Partner, sign: f64| {
         let Partner::Grain(grain) = own else {
             return None;
@@ -89,12 +89,12 @@ fn halves(contact: &Contact, state: &ContactState) -> [Option<HalfContact>; 2] {
             grain,
             partner,
             // With n and t both reversed, F_n and F_t are the same at both ends.
-            normal: contact.normal * sign,
-            lever: contact.point,
+            normal: place.normal * sign,
+            lever: place.point,
             normal_force: state.force.normal,
             shear_force: state.force.shear,
             moment: state.force.moment * sign,
-            branch_length: contact.branch_length,
+            branch_length: place.branch_length,
             dual_length: contact.dual_length_full,
         })
     };

@@ -23,8 +23,8 @@ pub use tensor::{SymmetricTensor, Tensor};
 pub use window::{Window, coordination_number, void_ratio, window_area};
 pub use work::{boundary_work, contact_mean_work, contact_work, macroscopic_work};
 
-use crate::assembly::{Assembly, Partner};
-use crate::equilibrium::{Equilibrium, Load, State};
+use crate::assembly::{Assembly, Contact, Partner};
+use crate::equilibrium::{self, Equilibrium, Load, Place, State};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerBody};
 
@@ -50,6 +50,20 @@ impl<'a> Snapshot<'a> {
             loads: &equilibrium.loads,
             reactions: &equilibrium.reactions,
         }
+    }
+
+    /// Where a grain's centre is in this state.
+    fn centre(&self, grain: GrainId) -> Vector {
+        let displacement = self.state.displacements[self.assembly.body(Partner::Grain(grain))];
+        equilibrium::centre(&self.assembly.grains[grain], displacement)
+    }
+
+    /// Where a contact is in this state.
+    fn place(&self, contact: &Contact) -> Place {
+        let displacements = &self.state.displacements;
+        let [first, second] = [contact.first, contact.second]
+            .map(|partner| displacements[self.assembly.body(partner)]);
+        equilibrium::contact_place(contact, first, second)
     }
 
     /// Displacement of a grain's centre.

@@ -28,7 +28,7 @@ pub fn strain(snapshot: &Snapshot<'_>, window: &Window) -> Option<Tensor> {
 
 /// Twice the integral of ∂_i u_j over a triangle, and twice its area.
 fn twice_integrals(snapshot: &Snapshot<'_>, triangle: &[GrainId; 3]) -> (Tensor, f64) {
-    let centre = |k: usize| snapshot.assembly.grains[triangle[k]].centre;
+    let centre = |k: usize| snapshot.centre(triangle[k]);
     let moved = |k: usize| snapshot.translation(triangle[k]);
     let (first, second) = (centre(1) - centre(0), centre(2) - centre(0));
     // Displacements relative to one corner: the three b add up to nothing.

@@ -55,16 +55,13 @@ pub fn macroscopic_work(
 pub fn boundary_work(snapshot: &Snapshot<'_>, window: &Window, gradient: Tensor) -> f64 {
     let mut work = 0.0;
     for &grain in window.grains() {
-        let (load, centre) = (
-            snapshot.external(grain),
-            snapshot.assembly.grains[grain].centre,
-        );
+        let (load, centre) = (snapshot.external(grain), snapshot.centre(grain));
         let fluctuation = snapshot.translation(grain) - gradient.at(centre);
         work += Vector::new(load.x, load.y).dot(fluctuation);
     }
     let crossing = half_contacts(snapshot, window).filter(|contact| leaves(contact, window));
     crossing.for_each(|contact| {
-        let point = snapshot.assembly.grains[contact.grain].centre + contact.lever;
+        let point = snapshot.centre(contact.grain) + contact.lever;
         let fluctuation = snapshot.translation(contact.grain) - gradient.at(point);
         work += contact.force().dot(fluctuation);
     });
@@ -86,10 +83,11 @@ pub fn contact_mean_work(snapshot: &Snapshot<'_>, contact: ContactId) -> Option<
     let (Partner::Grain(first), Partner::Grain(second)) = (shape.first, shape.second) else {
         return None;
     };
-    let (n, force) = (shape.normal, snapshot.state.contacts[contact].force);
+    let place = snapshot.place(shape);
+    let (n, force) = (place.normal, snapshot.state.contacts[contact].force);
     let force = n * force.normal + n.quarter_turn() * force.shear;
     let opening = snapshot.translation(second) - snapshot.translation(first);
-    let (dual, branch) = (shape.dual_length_full, shape.branch_length);
+    let (dual, branch) = (shape.dual_length_full, place.branch_length);
     let thickness = snapshot.assembly.thickness;
     let stress = Tensor::product(n, force) * (1.0 / (dual * thickness));
     let strain = Tensor::product(n, opening) * (1.0 / branch);
