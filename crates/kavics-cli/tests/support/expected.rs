@@ -149,13 +149,14 @@ impl<'a> Row<'a> {
                 let names = words("name")?;
                 all.filter(|row| names[*row] == self.key).collect()
             }
-            _ => match self.key.parse::<usize>() {
-                Ok(row) => all.filter(|other| *other == row).collect(),
-                Err(_) => {
+            _ => {
+                if let Ok(row) = self.key.parse::<usize>() {
+                    all.filter(|other| *other == row).collect()
+                } else {
                     let states = words("state")?;
                     all.filter(|row| states[*row] == self.key).collect()
                 }
-            },
+            }
         };
         if rows.is_empty() {
             return Err(format!(

@@ -7,7 +7,7 @@ use super::tables::{ContactRow, Half, Tables, Vector};
 pub fn value(name: &str, run: &Run, step: usize, key: &str) -> f64 {
     let tables = || Tables::read(run, step);
     match name {
-        "balance_of_reactions" => balance_of_reactions(&tables(), numbers(key)),
+        "balance_of_reactions" => balance_of_reactions(&tables(), &numbers(key)),
         "balance_of_grains" => balance_of_grains(&tables()),
         "boundary_moment" => boundary_moment(run, &tables(), step),
         "work_of_contacts" => work_of_contacts(run, &tables(), step),
@@ -16,8 +16,8 @@ pub fn value(name: &str, run: &Run, step: usize, key: &str) -> f64 {
         "sum_of_grain_stresses" => sum_of_grain_stresses(run, &tables(), step),
         "asymmetry" => asymmetry(&tables()),
         "bending_part" => bending_part(&tables()),
-        "cells_fill" => cells_fill(&tables(), numbers(key)),
-        "cells_close" => cells_close(&tables(), numbers(key)),
+        "cells_fill" => cells_fill(&tables(), &numbers(key)),
+        "cells_close" => cells_close(&tables(), &numbers(key)),
         "contacts_are_edges" => contacts_are_edges(&tables()),
         "order" => order(run, step),
         "contraction" => contraction(run, step),
@@ -44,8 +44,8 @@ fn at_step(run: &Run, step: usize, column: &str) -> f64 {
 }
 
 /// Loads and reactions of all grains and sides (of a box width × height) balance.
-fn balance_of_reactions(tables: &Tables, size: Vec<f64>) -> f64 {
-    let [width, height] = size[..] else {
+fn balance_of_reactions(tables: &Tables, size: &[f64]) -> f64 {
+    let [width, height] = *size else {
         panic!("width and height expected");
     };
     let middles = [
@@ -220,7 +220,7 @@ fn bending_part(tables: &Tables) -> f64 {
 }
 
 /// The cells fill the box.
-fn cells_fill(tables: &Tables, size: Vec<f64>) -> f64 {
+fn cells_fill(tables: &Tables, size: &[f64]) -> f64 {
     tables.area() / (size[0] * size[1]) - 1.0
 }
 
@@ -233,8 +233,8 @@ fn height(tables: &Tables, contact: &ContactRow, grain: usize) -> f64 {
 }
 
 /// Around grains farther than `margin` from a box width × height: Σ s n = 0, ½ Σ s h = A_p, Σ s h n⊗n + … = A_p.
-fn cells_close(tables: &Tables, key: Vec<f64>) -> f64 {
-    let [width, top, margin] = key[..] else {
+fn cells_close(tables: &Tables, key: &[f64]) -> f64 {
+    let [width, top, margin] = *key else {
         panic!("width, height, margin expected");
     };
     let inner = |at: Vector| {

@@ -100,7 +100,7 @@ pub struct Half {
 pub struct Tables {
     pub grains: Vec<GrainRow>,
     pub contacts: Vec<ContactRow>,
-    /// Force, moment, translation and rotation of each side.
+    /// Force, moment, translation and rotation of each side by its id; zero where there is none.
     pub sides: Vec<(Vector, f64, Vector, f64)>,
 }
 
@@ -210,6 +210,9 @@ fn contacts(table: &Reader) -> Vec<ContactRow> {
 fn sides(table: &Reader) -> Vec<(Vector, f64, Vector, f64)> {
     let (force, translation) = (table.vectors("fx", "fy"), table.vectors("ux", "uy"));
     let (moment, rotation) = (table.numbers("moment"), table.numbers("rotation"));
-    let row = |i: usize| (force[i], moment[i], translation[i], rotation[i]);
-    (0..moment.len()).map(row).collect()
+    let mut all = vec![Default::default(); 4];
+    for (i, side) in table.numbers("side").into_iter().enumerate() {
+        all[side as usize] = (force[i], moment[i], translation[i], rotation[i]);
+    }
+    all
 }
