@@ -5,12 +5,14 @@
 mod contact_graph;
 mod container;
 mod envelope;
+mod outer_face;
 
 pub use contact_graph::{
     Between, ContactGraph, ContactPoint, DualLength, Shaping, Site, contact_graph,
 };
 pub use container::{box_sides, outside, overlaps};
 pub use envelope::{EnvelopePart, envelope};
+pub use outer_face::outer_grains;
 
 use crate::geometry::Vector;
 use crate::ids::{BodyId, GrainId, Id, PerContact, PerGrain, PerSide, PropertyId, SideId};

@@ -4,7 +4,7 @@ use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::loading_plan::{ChoiceKind, ChoicePlan};
 use super::value::Placed;
-use crate::assembly::{Assembly, Grain};
+use crate::assembly::{Assembly, Grain, outer_grains};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerGrain, SideId};
 
@@ -20,7 +20,7 @@ pub fn choose(
         ChoiceKind::Ids(ids) => return by_id(ids, grains, checker),
         ChoiceKind::Edge(edge) => touching(SideId(*edge as u32), assembly, tolerance),
         ChoiceKind::Within(ranges) => within(grains, |centre| ranges.contain(centre)),
-        ChoiceKind::Boundary => boundary(assembly),
+        ChoiceKind::Boundary => outer_grains(assembly),
     };
     if chosen.is_empty() {
         let expected = match &choice.kind {
@@ -112,31 +112,4 @@ fn nearest(side: SideId, assembly: &Assembly) -> String {
         }
         None => "there is no grain".to_owned(),
     }
-}
-
-/// Grains around which the triangles do not close: those at the container or the hull of the assembly.
-fn boundary(assembly: &Assembly) -> Vec<GrainId> {
-    // Each triangle has, seen from a grain, a first and a second other corner; around an inner grain each
-    // neighbour is first once and second once.
-    let mut corners: Vec<[Vec<GrainId>; 2]> =
-        vec![<[Vec<GrainId>; 2]>::default(); assembly.grains.len()];
-    for [a, b, c] in &assembly.triangles {
-        for (grain, first, second) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let [firsts, seconds] = &mut corners[grain.0 as usize];
-            firsts.push(*first);
-            seconds.push(*second);
-        }
-    }
-    let is_inner = |[firsts, seconds]: &mut [Vec<GrainId>; 2]| {
-        firsts.sort_unstable();
-        seconds.sort_unstable();
-        !firsts.is_empty() && firsts == seconds
-    };
-    let outer = corners.iter_mut().map(|corners| !is_inner(corners));
-    assembly
-        .grains
-        .ids()
-        .zip(outer)
-        .filter_map(|(id, outer)| outer.then_some(id))
-        .collect()
 }
