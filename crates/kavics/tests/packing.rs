@@ -5,7 +5,7 @@ use kavics::geometry::Vector;
 use kavics::ids::{GrainId, Id, PerGrain};
 use kavics::packing::dropped::{drop, fill};
 use kavics::packing::statistics::{packing_fraction, sieve_curve};
-use kavics::packing::{Dropped, Mass, PackingError, Rows, SieveCurve, Sizes, Support, rows};
+use kavics::packing::{Dropped, Mass, PackingError, SieveCurve, Sizes, Support, rows};
 use proptest::prelude::*;
 
 const SEED: u64 = 1;
@@ -385,14 +385,14 @@ proptest! {
     fn hexagonal_rows_touch_and_do_not_overlap(
         radius in 0.1..10.0_f64,
         longest in 2_usize..12,
-        count in 1_usize..150,
+        count in 1_usize..30,
     ) {
         let width = 2.0 * radius * longest as f64;
-        let rows = Rows::Count { count, longest };
+        let rows: Vec<usize> = (0..count).map(|row| longest - row % 2).collect();
         let grains = rows::hexagonal(radius, width, &rows).unwrap();
-        prop_assert_eq!(grains.len(), count);
+        prop_assert_eq!(grains.len(), rows.iter().sum::<usize>());
         for (a, b, gap) in near_pairs(&grains, 0.1 * radius) {
-            prop_assert!(gap.abs() < 1e-12 * radius * count as f64, "{} {} {}", a, b, gap);
+            prop_assert!(gap.abs() < 1e-12 * radius * grains.len() as f64, "{} {} {}", a, b, gap);
         }
     }
 }

@@ -14,7 +14,6 @@ pub mod statistics;
 pub use dropped::{Dropped, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Stream};
-pub use rows::Rows;
 pub use sieve::{Mass, SieveCurve, Sizes};
 
 /// Most grains that are placed: ids and memory end somewhere above.

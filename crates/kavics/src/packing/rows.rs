@@ -8,37 +8,26 @@ use crate::geometry::Vector;
 use crate::ids::PerGrain;
 use crate::packing::{PackingError, check_box, check_count, check_radius};
 
-/// How many grains the rows of a hexagonal arrangement have.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Rows {
-    /// The grains of each row from the bottom; neighbours differ by an odd number.
-    Listed(Vec<usize>),
-    /// Rows of `longest`, `longest` − 1, `longest`, … grains from the bottom until `count` grains are placed.
-    /// What is left for the last row lies in the middle of its places.
-    Count {
-        /// Number of grains.
-        count: usize,
-        /// Grains of the first row.
-        longest: usize,
-    },
-}
-
-/// A row: places from the left, of which some in the middle are taken.
-struct Row {
-    places: usize,
-    grains: usize,
-}
-
-/// Grains of equal `radius` in hexagonal rows in a box of the given `width`.
+/// Grains of equal `radius` in hexagonal rows in a box of the given `width`; `rows` has the grains of each row from the
+/// bottom, and neighbours differ by an odd number.
 ///
 /// # Errors
 /// A row that is empty, longer than the box is wide, or does not fit into the gaps of the row below.
-pub fn hexagonal(radius: f64, width: f64, rows: &Rows) -> Result<PerGrain<Grain>, PackingError> {
-    let rows = match rows {
-        Rows::Listed(counts) => listed(counts)?,
-        &Rows::Count { count, longest } => alternating(count, longest)?,
-    };
-    place(radius, width, 3_f64.sqrt() * radius, &rows)
+pub fn hexagonal(radius: f64, width: f64, rows: &[usize]) -> Result<PerGrain<Grain>, PackingError> {
+    if rows.is_empty() {
+        return Err(PackingError::NoGrains);
+    }
+    if let Some(row) = rows.iter().position(|&grains| grains == 0) {
+        return Err(PackingError::EmptyRow { row: row + 1 });
+    }
+    for (row, pair) in rows.windows(2).enumerate() {
+        let (lower, upper) = (pair[0], pair[1]);
+        if lower.abs_diff(upper) % 2 == 0 {
+            let row = row + 1;
+            return Err(PackingError::RowsMismatch { row, lower, upper });
+        }
+    }
+    place(radius, width, 3_f64.sqrt() * radius, rows)
 }
 
 /// Grains of equal `radius` in `rows` rows of `columns` grains, each right above the other.
@@ -52,70 +41,25 @@ pub fn square(
     rows: usize,
 ) -> Result<PerGrain<Grain>, PackingError> {
     check_count(columns.saturating_mul(rows))?;
-    let row = || Row {
-        places: columns,
-        grains: columns,
-    };
-    let rows: Vec<Row> = std::iter::repeat_with(row).take(rows).collect();
-    place(radius, width, 2.0 * radius, &rows)
-}
-
-fn listed(counts: &[usize]) -> Result<Vec<Row>, PackingError> {
-    if counts.is_empty() {
-        return Err(PackingError::NoGrains);
-    }
-    if let Some(row) = counts.iter().position(|&grains| grains == 0) {
-        return Err(PackingError::EmptyRow { row: row + 1 });
-    }
-    for (row, pair) in counts.windows(2).enumerate() {
-        let (lower, upper) = (pair[0], pair[1]);
-        if lower.abs_diff(upper) % 2 == 0 {
-            let row = row + 1;
-            return Err(PackingError::RowsMismatch { row, lower, upper });
-        }
-    }
-    let row = |&grains: &usize| Row {
-        places: grains,
-        grains,
-    };
-    Ok(counts.iter().map(row).collect())
-}
-
-fn alternating(count: usize, longest: usize) -> Result<Vec<Row>, PackingError> {
-    check_count(count)?;
-    let mut rows = Vec::new();
-    let mut left = count;
-    while left > 0 {
-        let places = longest.saturating_sub(rows.len() % 2);
-        if places == 0 {
-            return Err(PackingError::EmptyRow {
-                row: rows.len() + 1,
-            });
-        }
-        let grains = places.min(left);
-        rows.push(Row { places, grains });
-        left -= grains;
-    }
-    Ok(rows)
+    place(radius, width, 2.0 * radius, &vec![columns; rows])
 }
 
 fn place(
     radius: f64,
     width: f64,
     pitch: f64,
-    rows: &[Row],
+    rows: &[usize],
 ) -> Result<PerGrain<Grain>, PackingError> {
     check(radius, width, rows)?;
     let count = rows
         .iter()
-        .fold(0_usize, |sum, row| sum.saturating_add(row.grains));
+        .fold(0_usize, |sum, &row| sum.saturating_add(row));
     check_count(count)?;
     let mut grains = Vec::with_capacity(count);
-    for (number, row) in rows.iter().enumerate() {
+    for (number, &row) in rows.iter().enumerate() {
         let y = radius + number as f64 * pitch;
-        let first = (row.places - row.grains) / 2;
-        for place in first..first + row.grains {
-            let from_middle = 2.0 * place as f64 - (row.places - 1) as f64;
+        for place in 0..row {
+            let from_middle = 2.0 * place as f64 - (row - 1) as f64;
             grains.push(Grain {
                 centre: Vector::new(0.5 * width + from_middle * radius, y),
                 radius,
@@ -125,16 +69,16 @@ fn place(
     Ok(grains.into())
 }
 
-fn check(radius: f64, width: f64, rows: &[Row]) -> Result<(), PackingError> {
+fn check(radius: f64, width: f64, rows: &[usize]) -> Result<(), PackingError> {
     check_radius(radius)?;
     check_box(width)?;
-    for (number, row) in rows.iter().enumerate() {
-        let length = 2.0 * radius * row.places as f64;
+    for (number, &grains) in rows.iter().enumerate() {
+        let length = 2.0 * radius * grains as f64;
         // Decimal numbers of the scene may miss each other by a rounding.
         if length > width + 1e-9 * radius {
             return Err(PackingError::RowTooLong {
                 row: number + 1,
-                grains: row.places,
+                grains,
                 radius,
                 length,
                 width,
@@ -154,7 +98,7 @@ mod tests {
 
     #[test]
     fn rows_of_five_and_four_fill_a_box_five_diameters_wide() {
-        let grains = hexagonal(1.0, 10.0, &Rows::Listed(vec![5, 4])).unwrap();
+        let grains = hexagonal(1.0, 10.0, &[5, 4]).unwrap();
         assert_eq!(
             abscissas(&grains),
             [1.0, 3.0, 5.0, 7.0, 9.0, 2.0, 4.0, 6.0, 8.0]
@@ -165,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_row_above_touches_two_grains_below() {
-        let grains = hexagonal(0.7, 20.0, &Rows::Listed(vec![6, 5])).unwrap();
+        let grains = hexagonal(0.7, 20.0, &[6, 5]).unwrap();
         let gap = |a: usize, b: usize| {
             let (a, b) = (grains.values()[a], grains.values()[b]);
             (b.centre - a.centre).length() - 1.4
@@ -177,17 +121,6 @@ mod tests {
     }
 
     #[test]
-    fn a_count_is_met_exactly_and_its_rest_lies_in_the_middle() {
-        let rows = Rows::Count {
-            count: 12,
-            longest: 5,
-        };
-        let grains = hexagonal(1.0, 10.0, &rows).unwrap();
-        assert_eq!(grains.len(), 12);
-        assert_eq!(abscissas(&grains)[9..], [3.0, 5.0, 7.0]);
-    }
-
-    #[test]
     fn square_rows_lie_above_each_other() {
         let grains = square(0.5, 3.0, 3, 2).unwrap();
         assert_eq!(abscissas(&grains), [0.5, 1.5, 2.5, 0.5, 1.5, 2.5]);
@@ -196,22 +129,18 @@ mod tests {
 
     #[test]
     fn rows_that_cannot_be_placed_say_why() {
-        let long = hexagonal(1.0, 9.0, &Rows::Listed(vec![5, 4])).unwrap_err();
+        let long = hexagonal(1.0, 9.0, &[5, 4]).unwrap_err();
         assert_eq!(
             long.to_string(),
             "row 1 of 5 grains of radius 1 is 10 long, the box 9 wide"
         );
-        let even = hexagonal(1.0, 20.0, &Rows::Listed(vec![5, 4, 6])).unwrap_err();
+        let even = hexagonal(1.0, 20.0, &[5, 4, 6]).unwrap_err();
         assert_eq!(
             even.to_string(),
             "rows 2 and 3 have 4 and 6 grains; they must differ by an odd number"
         );
-        let one = Rows::Count {
-            count: 3,
-            longest: 1,
-        };
         assert_eq!(
-            hexagonal(1.0, 20.0, &one).unwrap_err(),
+            hexagonal(1.0, 20.0, &[1, 0, 1]).unwrap_err(),
             PackingError::EmptyRow { row: 2 }
         );
     }

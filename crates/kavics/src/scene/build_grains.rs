@@ -11,7 +11,7 @@ use super::value::Placed;
 use crate::assembly::{self, Grain, Side};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerGrain, PerSide};
-use crate::packing::{self, Mass, PackingError, Rows, SieveCurve, Sizes};
+use crate::packing::{self, Mass, PackingError, SieveCurve, Sizes};
 
 /// Grains in their box.
 #[derive(Clone, Debug)]
@@ -78,7 +78,7 @@ pub fn place(
 fn packed(plan: &GrainsPlan, seed: u64) -> Result<PerGrain<Grain>, PackingError> {
     match &plan.source {
         GrainSource::Hexagonal(radius, rows) => {
-            packing::rows::hexagonal(*radius, plan.width, &Rows::Listed(rows.clone()))
+            packing::rows::hexagonal(*radius, plan.width, rows)
         }
         GrainSource::Square(radius, columns, rows) => {
             packing::rows::square(*radius, plan.width, *columns, *rows)
