@@ -2,7 +2,10 @@
 
 use std::io::{Write, stdout};
 
-use kavics::scene::Scene;
+use kavics::assembly::Grain;
+use kavics::geometry::Vector;
+use kavics::ids::PerGrain;
+use kavics::packing::statistics::packing_fraction;
 use kavics_results::{grains_csv, write_grains};
 
 use crate::arguments::PackArguments;
@@ -11,35 +14,36 @@ use crate::scene_file;
 
 pub fn pack(arguments: &PackArguments) -> Result<(), Failure> {
     scene_file::start_threads(arguments.threads)?;
-    let scene = scene_file::read(&arguments.scene)?;
-    scene_file::show_warnings(&scene.warnings);
-    let grains = scene.assembly.grains.values();
+    let grains = scene_file::place_grains(&arguments.scene)?;
     if let Some(path) = &arguments.output {
-        write_grains(path, grains)?;
+        write_grains(path, grains.values())?;
     } else if !arguments.summary {
-        stdout().write_all(grains_csv(grains).as_bytes())?;
+        stdout().write_all(grains_csv(grains.values()).as_bytes())?;
     }
     if arguments.summary {
-        stdout().write_all(summary(&scene).as_bytes())?;
+        stdout().write_all(summary(&grains).as_bytes())?;
     }
     Ok(())
 }
 
-fn summary(scene: &Scene) -> String {
-    let grains = scene.assembly.grains.values();
-    let radii = || grains.iter().map(|grain| grain.radius);
-    let smallest = radii().fold(f64::INFINITY, f64::min);
-    let largest = radii().fold(0.0, f64::max);
-    let mean = scene.assembly.mean_radius();
-    let top = grains.iter().map(|grain| grain.centre.y + grain.radius);
-    let height = top.fold(f64::NEG_INFINITY, f64::max);
-    let solid: f64 = radii().map(|r| std::f64::consts::PI * r * r).sum();
-    let container: f64 = scene.assembly.cell_area.values().iter().sum();
+/// Smallest and largest of some values.
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    })
+}
+
+fn summary(grains: &PerGrain<Grain>) -> String {
+    let discs = grains.values();
+    let [smallest, largest] = extent(discs.iter().map(|grain| grain.radius));
+    let mean = discs.iter().map(|grain| grain.radius).sum::<f64>() / discs.len() as f64;
+    let [left, _] = extent(discs.iter().map(|grain| grain.centre.x - grain.radius));
+    let [_, right] = extent(discs.iter().map(|grain| grain.centre.x + grain.radius));
+    let [_, top] = extent(discs.iter().map(|grain| grain.centre.y + grain.radius));
+    let solid = packing_fraction(grains, Vector::new(left, 0.0), Vector::new(right, top));
     format!(
-        "grains       {}\ncontacts     {}\nradius       {smallest:.6} to {largest:.6}, mean {mean:.6}\n\
-         highest      {height:.6}\nsolid share  {:.6} of the box\n",
-        grains.len(),
-        scene.assembly.contacts.len(),
-        solid / container
+        "grains            {}\nradius            {smallest:.6} to {largest:.6}, mean {mean:.6}\n\
+         highest           {top:.6}\npacking fraction  {solid:.6} between the outermost grains, from floor to top\n",
+        discs.len(),
     )
 }

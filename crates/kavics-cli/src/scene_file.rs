@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use kavics::assembly::Grain;
+use kavics::ids::PerGrain;
 use kavics::scene::{Scene, SceneError};
 use kavics_results::read_grains;
 
@@ -12,6 +14,22 @@ use crate::overrides;
 
 /// Reads the scene file, with what `--set` says.
 pub fn read(arguments: &SceneArguments) -> Result<Scene, Failure> {
+    with_text(arguments, |text, name, folder| {
+        Scene::parse(text, name, folder, &read_grains)
+    })
+}
+
+/// Reads no more of the scene file than places the grains.
+pub fn place_grains(arguments: &SceneArguments) -> Result<PerGrain<Grain>, Failure> {
+    with_text(arguments, |text, name, folder| {
+        Scene::place_grains(text, name, folder, &read_grains)
+    })
+}
+
+fn with_text<T>(
+    arguments: &SceneArguments,
+    read: impl FnOnce(&str, &str, &Path) -> Result<T, SceneError>,
+) -> Result<T, Failure> {
     let path = &arguments.scene;
     let text = fs::read_to_string(path).map_err(|source| {
         Failure::Scene(SceneError::Unreadable {
@@ -21,7 +39,7 @@ pub fn read(arguments: &SceneArguments) -> Result<Scene, Failure> {
     })?;
     let text = overrides::apply(&text, &arguments.set)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    Scene::parse(&text, &path.to_string_lossy(), folder, &read_grains).map_err(Failure::Scene)
+    read(&text, &path.to_string_lossy(), folder).map_err(Failure::Scene)
 }
 
 /// Where results of the scene go when nothing else is said: `NAME.results` in the working folder.

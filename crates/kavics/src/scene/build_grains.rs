@@ -77,9 +77,7 @@ pub fn place(
 
 fn packed(plan: &GrainsPlan, seed: u64) -> Result<PerGrain<Grain>, PackingError> {
     match &plan.source {
-        GrainSource::Hexagonal(radius, rows) => {
-            packing::rows::hexagonal(*radius, plan.width, rows)
-        }
+        GrainSource::Hexagonal(radius, rows) => packing::rows::hexagonal(*radius, plan.width, rows),
         GrainSource::Square(radius, columns, rows) => {
             packing::rows::square(*radius, plan.width, *columns, *rows)
         }
