@@ -359,3 +359,56 @@ fn a_modulus_gives_a_layer_over_the_branch_length() {
         assert!((found - expected / GEOMETRY.branch_length).abs() < 1e-15);
     }
 }
+
+/// Work = energy held + friction + what went elsewhere, for a contact that slides there and back, opens and closes.
+#[test]
+fn a_sliding_contact_books_all_its_work() {
+    const PARTS: usize = 4000;
+    let corners = [
+        at(0.0, 0.0, 0.0),
+        at(-0.1, 0.02, 0.0),
+        at(-0.2, 0.2, 0.0),
+        at(-0.05, -0.1, 0.0),
+        at(0.02, 0.1, 0.0),
+    ];
+    for (name, law) in every_law()
+        .into_iter()
+        .filter(|(name, _)| name.contains("friction"))
+    {
+        let k = law.stiffness(&GEOMETRY);
+        let (mut memory, mut work, mut gone, mut slid) = (ContactMemory::default(), 0.0, 0.0, 0);
+        for pair in corners.windows(2) {
+            for part in 1..=PARTS {
+                let share = part as f64 / PARTS as f64;
+                let v = at(
+                    pair[0].normal + share * (pair[1].normal - pair[0].normal),
+                    pair[0].shear + share * (pair[1].shear - pair[0].shear),
+                    0.0,
+                );
+                let mut phase = memory.phase;
+                let mut force = law.respond(v, &k, &memory, phase).force;
+                while let Some(change) = law.phase_change(v, force, &k, &memory, phase) {
+                    phase = change.to;
+                    force = law.respond(v, &k, &memory, phase).force;
+                }
+                slid += usize::from(matches!(
+                    phase,
+                    Phase::SlidingForward | Phase::SlidingBackward
+                ));
+                let (before, step) = (memory.force, memory.displacement);
+                work += 0.5 * (before.normal + force.normal) * (v.normal - step.normal)
+                    + 0.5 * (before.shear + force.shear) * (v.shear - step.shear);
+                let part = law.dissipation(v, force, &k, &memory, phase);
+                assert!(part.friction >= -1e-15, "{name}");
+                gone += part.friction + part.nonpotential;
+                memory = law.remember(v, force, &k, &memory, phase);
+            }
+        }
+        let held = law.energy(memory.displacement, memory.force, &k, &memory);
+        assert!(slid > PARTS / 2, "{name}");
+        assert!(
+            (work - held - gone).abs() < 1e-3 * work,
+            "{name}: {work} {held} {gone}"
+        );
+    }
+}

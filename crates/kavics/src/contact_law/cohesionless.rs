@@ -2,7 +2,7 @@
 //! Bojtár & Bagi (1989), eq. 22; friction by return mapping.
 
 use super::{
-    Cohesionless, ContactForce, ContactMemory, Dissipation, Phase, PhaseChange,
+    Cohesionless, ContactForce, ContactMemory, Dissipation, Phase, PhaseChange, Reading,
     RelativeDisplacement, Response, Stiffness, shear,
 };
 
@@ -182,10 +182,15 @@ impl Cohesionless {
         if sense(phase).is_none() && !opens {
             return Dissipation::default();
         }
-        let friction = sliding_work(friction, v, force, k, memory, opens);
+        // What the spring feels changes with k_t whether it slides or not: −½·∫ e² dk_t.
+        let nonpotential = if opens {
+            0.0
+        } else {
+            shear::dissipation(Reading::Printed, v, force.shear, k, memory)
+        };
         Dissipation {
-            friction,
-            nonpotential: 0.0,
+            friction: sliding_work(friction, v, force, k, memory, opens),
+            nonpotential,
         }
     }
 }
@@ -195,7 +200,7 @@ fn felt(force: f64, stiffness: f64) -> f64 {
     if force == 0.0 { 0.0 } else { force / stiffness }
 }
 
-/// Work of friction on the straight way from the remembered equilibrium to `v`, at constant shear stiffness.
+/// Work of friction on the straight way from the remembered equilibrium to `v`; exact at constant shear stiffness.
 fn sliding_work(
     friction: f64,
     v: RelativeDisplacement,
@@ -230,6 +235,7 @@ fn sliding_work(
     };
     let shear_at_slip = sense * (limit_before + meets * (limit_after - limit_before));
     let shear_after = sense * limit_after;
-    let slip = step * end * (1.0 - meets) - felt(shear_after - shear_at_slip, stiffness);
+    let felt_after = felt(shear_after, k.shear_at(v.normal));
+    let slip = step * end * (1.0 - meets) - (felt_after - felt(shear_at_slip, stiffness));
     0.5 * (shear_at_slip + shear_after) * slip
 }

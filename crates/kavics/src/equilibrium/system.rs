@@ -223,7 +223,7 @@ impl<'a> System<'a> {
     }
 
     /// Whether any contact does.
-    pub(super) fn any_phases(&self, configuration: &Configuration) -> bool {
+    pub(crate) fn any_phases(&self, configuration: &Configuration) -> bool {
         configuration
             .bonds
             .values()

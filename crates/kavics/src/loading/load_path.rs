@@ -8,7 +8,7 @@ use crate::assembly::Assembly;
 use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
-use crate::equilibrium::{Equilibrium, Settings, SolveError};
+use crate::equilibrium::{Equilibrium, Iteration, Settings, SolveError};
 use crate::ids::PerProperty;
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
@@ -170,8 +170,33 @@ impl<'a> LoadPath<'a> {
         }
     }
 
-    /// One part of a load step; on failure all stays as it was but for the count of iterations.
+    /// One part of a load step, where the secant finds no admissible phases by the tangent again.
     fn attempt(&mut self, load_step: &LoadStep, share: f64, way: &mut Way) -> Result<(), Failure> {
+        let failure = match self.attempt_once(load_step, share, way) {
+            Err(failure)
+                if self.system.settings.iteration == Iteration::Secant && self.has_phases() =>
+            {
+                failure
+            }
+            reached => return reached,
+        };
+        self.system.settings.iteration = Iteration::Tangent;
+        let again = self.attempt_once(load_step, share, way);
+        self.system.settings.iteration = Iteration::Secant;
+        again.map_err(|_| failure)
+    }
+
+    fn has_phases(&self) -> bool {
+        self.system.any_phases(&self.point.configuration)
+    }
+
+    /// One try; on failure all stays as it was but for the count of iterations.
+    fn attempt_once(
+        &mut self,
+        load_step: &LoadStep,
+        share: f64,
+        way: &mut Way,
+    ) -> Result<(), Failure> {
         let mut tried = way.clone();
         let (factors, load_factor) = (load_step.factors(share), load_step.load_factor(share));
         let reached = advance::advance(
