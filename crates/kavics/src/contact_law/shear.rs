@@ -101,9 +101,8 @@ pub(super) fn dissipation(
         return 0.0;
     }
     let (before, now) = (k.shear_at(memory.displacement.normal), k.shear_at(v.normal));
-    let (felt_before, felt_now) = (memory.force.shear / before, force / now);
-    let mean_square =
-        (felt_before * felt_before + felt_before * felt_now + felt_now * felt_now) / 3.0;
+    let felt = [memory.force.shear / before, force / now];
+    let mean_square = mean_square_above_floor(felt, [memory.displacement.normal, v.normal], k);
     match reading {
         Reading::Potential => 0.0,
         // −½·∫ e² dk_t with e and k_t linear along the way.
@@ -115,4 +114,17 @@ pub(super) fn dissipation(
             work - energy(force, now) + energy(memory.force.shear, before)
         }
     }
+}
+
+/// Mean of e² over the part of the straight way on which the floor does not hold the stiffness.
+fn mean_square_above_floor(felt: [f64; 2], opening: [f64; 2], k: &Stiffness) -> f64 {
+    let at = |share: f64| felt[0] + share * (felt[1] - felt[0]);
+    // Share of the way at which the stiffness meets the floor.
+    let meets = ((k.shear - k.shear_floor) / k.hardening - opening[0]) / (opening[1] - opening[0]);
+    let (from, to) = match opening.map(|opening| k.on_floor(opening)) {
+        [false, true] => (felt[0], at(meets)),
+        [true, false] => (at(meets), felt[1]),
+        _ => (felt[0], felt[1]),
+    };
+    (from * from + from * to + to * to) / 3.0
 }

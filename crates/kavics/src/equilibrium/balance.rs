@@ -66,10 +66,11 @@ impl System<'_> {
                 || iteration == Iteration::Tangent && history.is_hopeless();
             let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > STUCK;
             if hopeless || floppy {
-                if hopeless && !self.any_phases(configuration) {
-                    return Err(not_converged(progress, &imbalance));
-                }
+                let failure = not_converged(progress, &imbalance);
                 configuration.displacements = start;
+                if hopeless && !self.any_phases(configuration) {
+                    return Err(self.mechanism_or(failure, configuration, action, progress));
+                }
                 let iteration = if floppy { Iteration::Secant } else { iteration };
                 return self.drift(configuration, action, iteration, progress);
             }
@@ -89,7 +90,11 @@ impl System<'_> {
             let phases = self.any_phases(configuration);
             match solved {
                 Ok(step) if !phases || self.is_small(&step) => self.advance(configuration, &step),
-                Err(_) if !phases => return Err(not_converged(progress, &imbalance)),
+                Err(_) if !phases => {
+                    let failure = not_converged(progress, &imbalance);
+                    configuration.displacements = start;
+                    return Err(self.mechanism_or(failure, configuration, action, progress));
+                }
                 // As good as a mechanism: the set of phases will change before anything moves so far.
                 Ok(_) | Err(_) => {
                     configuration.displacements = start;
@@ -97,6 +102,26 @@ impl System<'_> {
                 }
             }
         }
+    }
+
+    /// A mechanism where the secant has floppy modes; else the failure as it is.
+    fn mechanism_or(
+        &mut self,
+        failure: Failure,
+        configuration: &mut Configuration,
+        action: &Action,
+        progress: &mut Progress,
+    ) -> Failure {
+        self.respond(configuration);
+        let unbalanced = self.imbalance(configuration, &action.loads).unbalanced;
+        self.factored = None;
+        let solved = self.solve(configuration, &unbalanced, Iteration::Secant, 0.0, progress);
+        if solved.is_err() || progress.held_pivots == 0 {
+            return failure;
+        }
+        self.drift(configuration, action, Iteration::Secant, progress)
+            .err()
+            .unwrap_or(failure)
     }
 
     /// Brings the moved freedoms to their values; the loads that the move causes at the other freedoms are those

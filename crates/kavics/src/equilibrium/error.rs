@@ -9,7 +9,7 @@ use crate::ids::{ContactId, GrainId};
 pub enum SolveError {
     /// The iteration did not settle.
     #[error(
-        "load step {step}: no equilibrium beyond load factor {load_factor:.6} after {iterations} iterations (residual {residual:.1e}, wanted {tolerance:.1e}); largest at {at}"
+        "load step {step}: no equilibrium found beyond load factor {load_factor:.6} after {iterations} iterations (residual {residual:.1e}, wanted {tolerance:.1e}); largest at {at}"
     )]
     NotConverged {
         /// Load step.
@@ -40,7 +40,7 @@ pub enum SolveError {
     },
     /// Contacts open, close, stick and slide without end.
     #[error(
-        "load step {step}: no equilibrium beyond load factor {load_factor:.6}: the status of {} does not settle",
+        "load step {step}: no equilibrium found beyond load factor {load_factor:.6}: the status of {} does not settle",
         list_contacts(contacts)
     )]
     Chatter {

@@ -9,7 +9,7 @@ use super::sparsity::{Numbers, Sparsity, Stored};
 use super::{Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
-use crate::ids::{BodyId, Id, PerBody, PerContact, PerProperty};
+use crate::ids::{BodyId, Id, PerBody, PerContact, PerGrain, PerProperty};
 
 /// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
 pub struct System<'a> {
@@ -125,20 +125,37 @@ impl<'a> System<'a> {
         (1e-12 * self.largest_force).max(1e-14 * self.moved_force)
     }
 
-    /// Finds the pieces that nothing holds and nothing loads, and leaves them out.
+    /// Finds the pieces that nothing holds and nothing loads, and leaves them out; and bodies without contact whose
+    /// free freedoms nothing loads.
     pub fn leave_out_loose_pieces(&mut self, bonds: &PerContact<Bond>, loads: &PerBody<Load>) {
+        let mut touched = vec![false; self.assembly.body_count()];
         let active = self
             .frames
             .iter()
             .zip(bonds.values())
-            .filter(|(_, bond)| bond.is_active())
-            .map(|(f, _)| f);
-        let pieces = Pieces::new(self.assembly.body_count(), active);
-        let wanted =
-            pieces.any(|body| self.anchored[body] || loads.values()[body] != Load::default());
+            .filter(|(_, bond)| bond.is_active());
+        let active: Vec<&ContactFrame> = active.map(|(frame, _)| frame).collect();
+        for frame in &active {
+            touched[frame.first.index()] = true;
+            touched[frame.second.index()] = true;
+        }
+        let pieces = Pieces::new(self.assembly.body_count(), active.into_iter());
+        let wanted = pieces.any(|body| {
+            let load = loads.values()[body];
+            let pushed = self.at_free_freedoms(BodyId::from_index(body), load) != Load::default();
+            pushed || touched[body] && (self.anchored[body] || load != Load::default())
+        });
         for (set_aside, wanted) in self.set_aside.iter_mut().zip(wanted) {
             *set_aside = !wanted;
         }
+    }
+
+    /// Grains that nothing holds and nothing loads.
+    pub fn loose_grains(&self) -> PerGrain<bool> {
+        let grains = 0..self.assembly.grains.len();
+        grains
+            .map(|grain| self.set_aside[grain] && !self.anchored[grain])
+            .collect()
     }
 
     /// Relative displacement and force of every contact at the present displacements.
@@ -195,11 +212,16 @@ impl<'a> System<'a> {
         self.assembly.moment_arm(self.assembly.partner(body))
     }
 
-    /// The components of a load at freedoms that are unknown.
+    /// The components of a load at freedoms that are unknown; none of a body that is set aside.
     pub(super) fn free_part(&self, body: BodyId, load: Load) -> Load {
         if self.set_aside[body.index()] {
-            return Load::default();
+            Load::default()
+        } else {
+            self.at_free_freedoms(body, load)
         }
+    }
+
+    fn at_free_freedoms(&self, body: BodyId, load: Load) -> Load {
         let mut components = load.components();
         for (component, number) in components.iter_mut().zip(&self.numbers[body.index()]) {
             if number.is_none() {

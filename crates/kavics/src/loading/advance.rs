@@ -119,8 +119,7 @@ fn equilibrium(
         (&configuration, &forces),
         system.properties,
     );
-    let grains = system.assembly.grains.len();
-    let set_aside: PerGrain<bool> = system.set_aside[..grains].to_vec().into();
+    let set_aside = system.loose_grains();
     let iteration = way.progress.iterations;
     let happened = phase_events(&before.configuration, &configuration)
         .chain(set_aside_events(&before.set_aside, &set_aside))
@@ -169,13 +168,22 @@ fn phase_events<'a>(
 ) -> impl Iterator<Item = EventKind> + 'a {
     let pairs = before.bonds.iter().zip(after.bonds.values());
     pairs
-        .filter(|((_, old), new)| old.phase != new.phase)
-        .map(|((contact, old), new)| match (old.phase, new.phase) {
-            (_, Phase::Open) => EventKind::Opened(contact),
-            (Phase::Open, Phase::Closed) => EventKind::Closed(contact),
-            (_, Phase::SlidingForward | Phase::SlidingBackward) => EventKind::Slid(contact),
-            (_, Phase::Closed) => EventKind::Stuck(contact),
-        })
+        .flat_map(|((contact, old), new)| changes(contact, old.phase, new.phase))
+        .flatten()
+}
+
+/// What a change of phase is called: a contact that closes sliding closes and slides, one that slides the other way
+/// sticks and slides.
+fn changes(contact: ContactId, old: Phase, new: Phase) -> [Option<EventKind>; 2] {
+    let first = match (old, new) {
+        (old, new) if old == new => return [None, None],
+        (_, Phase::Open) => return [Some(EventKind::Opened(contact)), None],
+        (Phase::Open, _) => Some(EventKind::Closed(contact)),
+        (Phase::Closed, _) => None,
+        (Phase::SlidingForward | Phase::SlidingBackward, _) => Some(EventKind::Stuck(contact)),
+    };
+    let slides = matches!(new, Phase::SlidingForward | Phase::SlidingBackward);
+    [first, slides.then_some(EventKind::Slid(contact))]
 }
 
 fn set_aside_events<'a>(
@@ -336,7 +344,6 @@ pub fn undeformed(system: &mut System<'_>, program: &Program) -> Point {
         ever[applied.body] += applied.load.magnitude();
     }
     system.leave_out_loose_pieces(&configuration.bonds, &ever);
-    let grains = assembly.grains.len();
     Point {
         configuration,
         forces: Forces {
@@ -345,7 +352,7 @@ pub fn undeformed(system: &mut System<'_>, program: &Program) -> Point {
         },
         energy: Energy::default(),
         factors: vec![0.0; program.actions.len()],
-        set_aside: system.set_aside[..grains].to_vec().into(),
+        set_aside: system.loose_grains(),
         residual: 0.0,
     }
 }
