@@ -65,8 +65,8 @@ pub struct ContactGraph {
     pub sites: Vec<Site>,
     /// Area of each grain's power cell within the container, `[length²]`.
     pub cell_area: PerGrain<f64>,
-    /// Triangles of the regular triangulation, counter-clockwise, lowest id first, whose power centre lies in the
-    /// container (its boundary included).
+    /// Triangles of the regular triangulation up to its hull, counter-clockwise, lowest id first; those with their
+    /// power centre in the container come first.
     pub triangles: Vec<[GrainId; 3]>,
 }
 
@@ -120,7 +120,12 @@ pub fn contact_graph(
     let triangle = |t: &[u32; 3]| t.map(GrainId);
     ContactGraph {
         sites,
-        triangles: diagram.triangles.iter().map(triangle).collect(),
+        triangles: diagram
+            .triangles
+            .iter()
+            .chain(&diagram.outer_triangles)
+            .map(triangle)
+            .collect(),
         cell_area: diagram.cell_area.into(),
     }
 }

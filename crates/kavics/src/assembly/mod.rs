@@ -125,7 +125,7 @@ pub struct Assembly {
     pub contacts: PerContact<Contact>,
     /// Area of each grain's power cell within the container, `[length²]`.
     pub cell_area: PerGrain<f64>,
-    /// Triangles of the regular triangulation, counter-clockwise, whose power centre lies in the container.
+    /// Triangles of the regular triangulation up to its hull, counter-clockwise.
     pub triangles: Vec<[GrainId; 3]>,
     /// Thickness out of the plane, `[length]`.
     pub thickness: f64,

@@ -50,7 +50,7 @@ impl Line {
         self.c > 0.0 && self.c * self.c > squared * self.d.length_squared() * (1.0 + 1e-6)
     }
 
-    fn is_disc(&self) -> bool {
+    pub(super) fn is_disc(&self) -> bool {
         self.tag < SIDES
     }
 }

@@ -11,6 +11,9 @@ use crate::geometry::lifted::Lifted;
 use crate::geometry::near_pairs::{DISCS_A_TASK, Disc, Grid, NearPair};
 use crate::geometry::power_cell::{Cell, Line, SIDES};
 
+/// Radical centres farther away than this many sizes of the container belong to triangles too flat to matter.
+const OUTSIDE: f64 = 1e6;
+
 /// Common edge of the cells of two discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DualEdge {
@@ -46,6 +49,9 @@ pub struct PowerDiagram {
     /// Triangles, counter-clockwise, lowest number first, whose radical centre lies in the container or, to 1e-9 of
     /// its size, on its boundary.
     pub triangles: Vec<[u32; 3]>,
+    /// The other triangles, up to the hull: their radical centre lies outside the container, but no farther than a
+    /// million times its size.
+    pub outer_triangles: Vec<[u32; 3]>,
 }
 
 /// The power diagram of discs in a container.
@@ -65,16 +71,19 @@ pub fn power_diagram(
     let centres: Vec<Vector> = centres.iter().map(|&x| x * scale).collect();
     let radii: Vec<f64> = radii.iter().map(|&r| r * scale).collect();
     let clipping = Clipping::new(&centres, &radii, container.scaled(scale), near);
-    let tasks: Vec<PowerDiagram> = clipping
+    let tasks: Vec<(PowerDiagram, Vec<u32>)> = clipping
         .grid
         .discs
         .par_chunks(DISCS_A_TASK)
         .map(|discs| clipping.cells(discs))
         .collect();
     let mut diagram = PowerDiagram::default();
-    for task in tasks {
+    let mut at_boundary = Vec::new();
+    for (task, outer) in tasks {
         diagram.append(task, unit);
+        at_boundary.extend(outer);
     }
+    diagram.outer_triangles = clipping.outer_triangles(&at_boundary);
     diagram
 }
 
@@ -116,22 +125,42 @@ impl<'a> Clipping<'a> {
         }
     }
 
-    fn cells(&self, discs: &[Disc]) -> PowerDiagram {
+    /// Cells, edges and inner triangles of some discs, and those whose cells meet the container.
+    fn cells(&self, discs: &[Disc]) -> (PowerDiagram, Vec<u32>) {
         let mut cell = Cell::default();
-        let mut diagram = PowerDiagram::default();
+        let (mut diagram, mut at_boundary) = (PowerDiagram::default(), Vec::new());
         for disc in discs {
             self.cut_out(disc, &mut cell);
-            self.collect_triangles(disc, &cell, &mut diagram.triangles);
+            self.collect_triangles(disc, &cell, true, &mut diagram.triangles);
+            if cell.edges.iter().any(|edge| !edge.line.is_disc()) {
+                at_boundary.push(disc.index);
+            }
             self.clip_by_sides(disc, &mut cell);
             diagram.cell_area.push(cell.area());
             collect_edges(disc, &cell, &mut diagram);
         }
-        diagram
+        (diagram, at_boundary)
+    }
+
+    /// The triangles with their radical centre outside the container. Cells that meet there reach through the
+    /// container's boundary, each from its own centre, so only those can own or cut one.
+    fn outer_triangles(&self, at_boundary: &[u32]) -> Vec<[u32; 3]> {
+        let of_disc = |cell: &mut Cell, &index: &u32| {
+            let disc = &self.grid.discs[index as usize];
+            self.start(disc, OUTSIDE * self.size, cell);
+            let near = self.neighbours.of(index).iter().chain(at_boundary);
+            near.for_each(|&other| self.cut(disc, &self.grid.discs[other as usize], cell));
+            let mut triangles = Vec::new();
+            self.collect_triangles(disc, cell, false, &mut triangles);
+            triangles
+        };
+        let triangles = at_boundary.par_iter().map_init(Cell::default, of_disc);
+        triangles.collect::<Vec<_>>().concat()
     }
 
     /// The cell of a disc in the container grown a little, so that radical centres on its boundary are not lost.
     fn cut_out(&self, disc: &Disc, cell: &mut Cell) {
-        self.start(disc, cell);
+        self.start(disc, 1e-6 * self.size, cell);
         for &other in self.neighbours.of(disc.index) {
             self.cut(disc, &self.grid.discs[other as usize], cell);
         }
@@ -160,8 +189,9 @@ impl<'a> Clipping<'a> {
         }
     }
 
-    fn start(&self, disc: &Disc, cell: &mut Cell) {
-        let (container, margin) = (&self.container, 1e-6 * self.size);
+    /// The container, grown by a margin, as the first cell of a disc.
+    fn start(&self, disc: &Disc, margin: f64, cell: &mut Cell) {
+        let container = &self.container;
         let around = &container.around;
         let normal = |k: usize| container.sides[around[k % around.len()] as usize].outward;
         let polygon = around.iter().zip(&container.corners).enumerate();
@@ -200,13 +230,20 @@ impl<'a> Clipping<'a> {
         }
     }
 
-    fn collect_triangles(&self, disc: &Disc, cell: &Cell, triangles: &mut Vec<[u32; 3]>) {
+    /// The triangles that a disc owns, with their radical centre in the container or outside it.
+    fn collect_triangles(
+        &self,
+        disc: &Disc,
+        cell: &Cell,
+        within: bool,
+        triangles: &mut Vec<[u32; 3]>,
+    ) {
         let tolerance = 1e-9 * self.size;
         let before = triangles.len();
         for (a, b, point) in cell.radical_centres() {
             let point = disc.centre + point;
             let inside = |side: &HalfPlane| side.distance(point) >= -tolerance;
-            if disc.index < a.min(b) && self.container.sides.iter().all(inside) {
+            if disc.index < a.min(b) && self.container.sides.iter().all(inside) == within {
                 triangles.push([disc.index, a, b]);
             }
         }
