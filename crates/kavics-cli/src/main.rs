@@ -5,6 +5,7 @@ mod check;
 mod failure;
 mod measure;
 mod overrides;
+mod own_files;
 mod pack;
 mod run;
 mod scene_file;

@@ -9,7 +9,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::Failure;
-use crate::scene_file;
+use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
     let folder = ResultsFolder::open(&arguments.results)?;
@@ -44,29 +44,18 @@ fn measured_rows(folder: &ResultsFolder, scene: &Scene) -> Result<Vec<StepRow>, 
 
 /// The scene of the results. What it read from other files is read from the folder.
 fn scene_of(folder: &ResultsFolder, window: Option<&str>) -> Result<Scene, Failure> {
-    let text = with_own_files(&folder.scene()?, window)?;
+    let text = in_window(&own_files::named(&folder.scene()?), window)?;
     let name = folder.path().join("scene.toml");
     Scene::parse(&text, &name.to_string_lossy(), folder.path(), &read_grains)
         .map_err(Failure::Scene)
 }
 
-fn with_own_files(text: &str, window: Option<&str>) -> Result<String, Failure> {
-    let Ok(mut document) = text.parse::<DocumentMut>() else {
+fn in_window(text: &str, window: Option<&str>) -> Result<String, Failure> {
+    let (Some(window), Ok(mut document)) = (window, text.parse::<DocumentMut>()) else {
         return Ok(text.to_owned());
     };
-    let listed = document
-        .get("grains")
-        .and_then(|grains| grains.get("listed"));
-    if listed.is_some() {
-        document["grains"]["listed"]["file"] = toml_edit::value("grains/000000.parquet");
-    }
-    if document.contains_key("compare") {
-        document["compare"]["file"] = toml_edit::value("compare.csv");
-    }
-    if let Some(window) = window {
-        let measure = document.entry("measure").or_insert_with(toml_edit::table);
-        measure["window"] = Item::Value(parse_window(window)?);
-    }
+    let measure = document.entry("measure").or_insert_with(toml_edit::table);
+    measure["window"] = Item::Value(parse_window(window)?);
     Ok(document.to_string())
 }
 

@@ -7,18 +7,20 @@ use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
 use kavics::measure::{Snapshot, Window, grain_stress, measures};
 use kavics::scene::Scene;
-use kavics_results::{Options, Results, ResultsFolder, RunState, check_room};
+use kavics_results::{Options, Results, ResultsFolder, RunState, check_apart, check_room};
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
-use crate::{scene_file, summary};
+use crate::{own_files, scene_file, summary};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
     let folder = arguments.output.clone().unwrap_or_else(usual);
     check_room(&folder, arguments.force)?;
     let threads = scene_file::start_threads(arguments.threads)?;
-    let scene = scene_file::read(&arguments.scene)?;
+    let mut scene = scene_file::read(&arguments.scene)?;
+    check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
+    scene.text = own_files::named(&scene.text);
     let options = Options {
         threads,
         replace: arguments.force,

@@ -10,7 +10,7 @@ use kavics_results::read_grains;
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
-use crate::overrides;
+use crate::{overrides, own_files};
 
 /// Reads the scene file, with what `--set` says.
 pub fn read(arguments: &SceneArguments) -> Result<Scene, Failure> {
@@ -24,6 +24,16 @@ pub fn place_grains(arguments: &SceneArguments) -> Result<PerGrain<Grain>, Failu
     with_text(arguments, |text, name, folder| {
         Scene::place_grains(text, name, folder, &read_grains)
     })
+}
+
+/// The files that a run of the scene reads: the scene itself, and those it names.
+pub fn files_read(arguments: &SceneArguments, scene: &Scene) -> Vec<PathBuf> {
+    let folder = arguments.scene.parent().unwrap_or(Path::new(""));
+    let listed = own_files::listed(&scene.text).map(|file| folder.join(file));
+    let mut files = vec![arguments.scene.clone()];
+    files.extend(listed);
+    files.extend(scene.compare.clone());
+    files
 }
 
 fn with_text<T>(

@@ -290,3 +290,51 @@ fn a_compared_table_stands_in_the_summary() {
     assert!(summary.contains("# made up"), "{summary}");
     assert!(summary.contains("-36.000000"), "{summary}");
 }
+
+#[test]
+fn force_replaces_nothing_that_the_run_needs_or_the_user_wrote() {
+    let place = place_with(BLOCK);
+    let results = place.path().join("block.results");
+    assert_eq!(status(&kavics(place.path(), &["run", "block.toml"])), 0);
+    let before = names(&results);
+    let scene = ["run", "block.results/scene.toml", "--force"];
+    let own = kavics(
+        place.path(),
+        &[&scene[..], &["-o", "block.results"]].concat(),
+    );
+    assert_eq!(status(&own), 2, "{}", text(&own.stderr));
+    let here = kavics(&results, &["run", "../block.toml", "--force", "-o", "."]);
+    assert_eq!(status(&here), 2, "{}", text(&here.stderr));
+    assert_eq!(names(&results), before);
+    fs::write(results.join("notes.txt"), "all of it").expect("room on the disk");
+    let forced = kavics(place.path(), &["run", "block.toml", "--force"]);
+    assert_eq!(status(&forced), 2, "{}", text(&forced.stderr));
+    assert!(text(&forced.stderr).contains("notes.txt"));
+    assert!(results.join("steps.parquet").is_file());
+}
+
+#[test]
+fn the_scene_of_the_results_runs_again() {
+    let listed = BLOCK.replace(
+        "[grains.hexagonal]\nradius = 1.0\nrows = [5, 4, 5, 4, 5, 4, 5]",
+        "[grains.listed]\nfile = \"pack.csv\"",
+    );
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["pack", "block.toml", "-o", "pack.csv"]);
+    let listed = format!("{listed}\n[compare]\nfile = \"table.csv\"\n");
+    fs::write(place.path().join("listed.toml"), listed).expect("room on the disk");
+    let table = "load_factor,stress_yy\n1.2,-36.0\n";
+    fs::write(place.path().join("table.csv"), table).expect("room on the disk");
+    for arguments in [
+        ["run", "listed.toml", "-o", "one"],
+        ["run", "one/scene.toml", "-o", "two"],
+    ] {
+        let run = kavics(place.path(), &arguments);
+        assert_eq!(status(&run), 0, "{}", text(&run.stderr));
+    }
+    for file in ["scene.toml", "steps.parquet", "compare.csv"] {
+        let [one, two] =
+            ["one", "two"].map(|folder| fs::read(place.path().join(folder).join(file)));
+        assert_eq!(one.expect("a file"), two.expect("a file"), "{file}");
+    }
+}

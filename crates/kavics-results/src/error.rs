@@ -20,6 +20,22 @@ pub enum ResultsError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The folder holds results and something else, which is left alone.
+    #[error("{} holds {}, which is no file of a run; nothing there is replaced", folder.display(), path.display())]
+    NotOfARun {
+        /// The folder.
+        folder: PathBuf,
+        /// What is no file of a run.
+        path: PathBuf,
+    },
+    /// The folder is to be replaced and holds what the run needs.
+    #[error("{} holds {}, which the run needs; nothing there is replaced", folder.display(), path.display())]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+        /// What the run needs.
+        path: PathBuf,
+    },
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
     Unreadable {

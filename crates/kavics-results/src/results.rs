@@ -19,6 +19,7 @@ use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
+use crate::room::{RECORDED, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::warning::warning_text;
@@ -64,7 +65,7 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
-        for name in ["grains", "contacts", "sides"] {
+        for name in RECORDED {
             let path = folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -360,36 +361,6 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         failure: None,
         warnings: scene.warnings.clone(),
     }
-}
-
-/// Whether results can be written to `folder`: it is not there, or empty, or results that are to be replaced.
-/// Nothing is touched.
-///
-/// # Errors
-/// A results folder that is not to be replaced; any other folder with something in it; a file.
-pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
-    let empty = match fs::read_dir(folder) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(_) => !folder.exists(),
-    };
-    let folder = folder.to_owned();
-    if empty {
-        Ok(())
-    } else if !folder.join("run.json").is_file() {
-        Err(ResultsError::NotResults { folder })
-    } else if replace {
-        Ok(())
-    } else {
-        Err(ResultsError::Exists { folder })
-    }
-}
-
-fn make_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
-    check_room(folder, replace)?;
-    if folder.exists() {
-        fs::remove_dir_all(folder).map_err(ResultsError::unwritable(folder))?;
-    }
-    Ok(())
 }
 
 /// Grains of which some freedom is held or moved.
