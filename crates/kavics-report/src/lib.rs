@@ -2,6 +2,7 @@
 //!
 //! In: a results folder. Out: an HTML file without scripts and without network.
 
+mod compared_table;
 mod comparison;
 mod curves;
 mod error;
@@ -13,6 +14,7 @@ mod tensor;
 
 use std::path::{Path, PathBuf};
 
+pub use compared_table::{ComparedError, ComparedTable, MatchedBy};
 pub use comparison::{Compared, ComparedColumn, Comparison};
 pub use error::ReportError;
 use kavics_results::ResultsFolder;

@@ -36,4 +36,3 @@ pub use results::{Options, Results};
 pub use room::{check_apart, check_room};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
-pub use warning::warning_text;

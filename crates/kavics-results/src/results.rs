@@ -22,7 +22,7 @@ use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{RECORDED, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
-use crate::warning::warning_text;
+use crate::warning::SolverWarnings;
 
 /// Tables that grow are written again at most this often.
 const BETWEEN_WRITES: Duration = Duration::from_millis(500);
@@ -53,6 +53,7 @@ pub struct Results<'a> {
     broken: usize,
     held: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
+    solver_warnings: SolverWarnings,
     log: Log,
     written: Instant,
 }
@@ -81,6 +82,7 @@ impl<'a> Results<'a> {
             broken: 0,
             held: held_grains(scene),
             unrecorded: None,
+            solver_warnings: SolverWarnings::default(),
             log: Log::open(),
             written: Instant::now(),
         };
@@ -148,9 +150,10 @@ impl<'a> Results<'a> {
         &self.steps
     }
 
-    /// What the user should know so far: of the scene, then of the load steps.
-    pub fn warnings(&self) -> &[String] {
-        &self.record.warnings
+    /// What the user should know so far: of the scene, then of the load steps, each warning once.
+    pub fn warnings(&self) -> Vec<String> {
+        let known = self.record.warnings.iter().cloned();
+        known.chain(self.solver_warnings.texts()).collect()
     }
 
     /// Adds a sentence that the user should know.
@@ -188,10 +191,9 @@ impl<'a> Results<'a> {
                 event,
             });
         }
-        let warnings = equilibrium.warnings.iter();
-        self.record
-            .warnings
-            .extend(warnings.map(|warning| warning_text(step, warning)));
+        for warning in &equilibrium.warnings {
+            self.solver_warnings.add(step, warning);
+        }
     }
 
     fn step_row(&self, equilibrium: &Equilibrium, measures: &Measures) -> StepRow {
@@ -340,7 +342,11 @@ impl<'a> Results<'a> {
             let columns = iterate_columns();
             publish_table(&path("iterations.parquet"), &columns, &self.iterates)?;
         }
-        let mut record = serde_json::to_string_pretty(&self.record).expect("words are JSON");
+        let record = RunRecord {
+            warnings: self.warnings(),
+            ..self.record.clone()
+        };
+        let mut record = serde_json::to_string_pretty(&record).expect("words are JSON");
         record.push('\n');
         publish(&path("run.json"), record.as_bytes())?;
         publish(&path("log.ndjson"), self.log.text().as_bytes())
