@@ -12,6 +12,9 @@ Exit status:
   3  no equilibrium; the results are valid up to the load step named
   4  a file could not be read or written";
 
+/// More threads than any machine has, and fewer than one can start.
+const MOST_THREADS: usize = 1024;
+
 /// Quasi-static mechanics of granular and cemented assemblies
 #[derive(Debug, Parser)]
 #[command(name = "kavics", version, after_help = STATUS)]
@@ -118,7 +121,7 @@ pub struct CompletionsArguments {
 
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
-        Ok(count @ 1..) => Ok(count),
-        _ => Err("expected a whole number from 1".to_owned()),
+        Ok(count @ 1..=MOST_THREADS) => Ok(count),
+        _ => Err(format!("expected a whole number from 1 to {MOST_THREADS}")),
     }
 }

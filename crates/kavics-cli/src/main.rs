@@ -2,8 +2,10 @@
 
 mod arguments;
 mod check;
+mod compared;
 mod failure;
 mod measure;
+mod origins;
 mod overrides;
 mod own_files;
 mod pack;
@@ -12,6 +14,7 @@ mod scene_file;
 mod summary;
 mod texts;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -23,8 +26,10 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match perform(arguments.task) {
         Ok(()) => ExitCode::SUCCESS,
+        // Who stops reading, as head does, has what it wanted.
+        Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            scene_file::say(&format!("{failure}\n"));
             failure.status()
         }
     }

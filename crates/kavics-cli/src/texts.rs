@@ -6,10 +6,11 @@ use clap::CommandFactory;
 
 use crate::arguments::{Arguments, CompletionsArguments, ReportArguments};
 use crate::failure::Failure;
+use crate::scene_file::say;
 
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let path = kavics_report::write(&arguments.results, arguments.output.as_deref())?;
-    eprintln!("report: {}", path.display());
+    say(&format!("report: {}\n", path.display()));
     Ok(())
 }
 

@@ -338,3 +338,96 @@ fn the_scene_of_the_results_runs_again() {
         assert_eq!(one.expect("a file"), two.expect("a file"), "{file}");
     }
 }
+
+fn compared(place: &Path, table: &str) -> Output {
+    fs::write(place.join("table.csv"), table).expect("room on the disk");
+    kavics(place, &["run", "block.toml", "--force"])
+}
+
+#[test]
+fn a_table_that_cannot_be_compared_ends_before_the_run() {
+    let place = place_with(&format!("{BLOCK}\n[compare]\nfile = \"table.csv\"\n"));
+    for (table, reason) in [
+        (
+            "load_factor,stress_yy\n1.2,abc\n",
+            "table.csv: line 2, column `stress_yy`: \"abc\" is not a number",
+        ),
+        ("pressure\n1.0\n", "table.csv: no column has the name"),
+    ] {
+        let output = compared(place.path(), table);
+        let message = text(&output.stderr);
+        assert_eq!(status(&output), 2, "{message}");
+        assert!(message.contains(reason), "{message}");
+        assert!(message.contains("--> block.toml:36:8"), "{message}");
+        assert!(!place.path().join("block.results").exists());
+    }
+}
+
+#[test]
+fn rows_and_columns_that_are_not_compared_are_in_the_record() {
+    let place = place_with(&format!("{BLOCK}\n[compare]\nfile = \"table.csv\"\n"));
+    let output = compared(
+        place.path(),
+        "load_factor,stress_yy,stres_xx\n1.2,-36.0,1.0\n7.0,1.0,1.0\n",
+    );
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let results = ResultsFolder::open(&place.path().join("block.results")).expect("results");
+    let warnings = results.record().expect("run.json").warnings.join("\n");
+    assert!(warnings.contains("`stres_xx`"), "{warnings}");
+    assert!(warnings.contains("line 3 has no load step"), "{warnings}");
+}
+
+#[test]
+fn places_in_messages_are_those_of_the_file_or_of_the_command() {
+    let place = place_with(&BLOCK.replace("fix = [\"x\"]", "fixx = [\"x\"]"));
+    let tolerance = "equilibrium.tolernce=1";
+    let output = kavics(
+        place.path(),
+        &["check", "block.toml", "--set", "thickness=2.0"],
+    );
+    assert!(
+        text(&output.stderr).contains("--> block.toml:24:1"),
+        "{}",
+        text(&output.stderr)
+    );
+    fs::write(place.path().join("block.toml"), BLOCK).expect("room on the disk");
+    let output = kavics(place.path(), &["check", "block.toml", "--set", tolerance]);
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("--> --set equilibrium.tolernce=1"),
+        "{message}"
+    );
+    assert!(!message.contains("block.toml"), "{message}");
+}
+
+#[test]
+fn a_reader_of_json_that_leaves_does_not_end_the_run() {
+    let place = place_with(BLOCK);
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("kavics"));
+    let mut run = command
+        .current_dir(place.path())
+        .args(["run", "block.toml", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the command runs");
+    drop(run.stdout.take());
+    assert!(run.wait().expect("the command runs").success());
+    let results = place.path().join("block.results");
+    let record = ResultsFolder::open(&results).and_then(|folder| folder.record());
+    assert_eq!(record.expect("run.json").state, RunState::Done);
+    assert!(results.join("report.html").is_file());
+}
+
+#[test]
+fn both_tables_of_the_summary_say_their_power_of_ten() {
+    let place = place_with(BLOCK);
+    let small = "load.0.normal=[-3e-5, -3e-5]";
+    let output = kavics(place.path(), &["run", "block.toml", "--set", small]);
+    let summary = text(&output.stderr);
+    assert_eq!(
+        summary.matches("(stresses in 1e-6)").count(),
+        2,
+        "{summary}"
+    );
+}
