@@ -39,8 +39,8 @@ pub enum Task {
     Schema,
     /// Write completions for a shell to stdout
     Completions(CompletionsArguments),
-    /// Write the manual page to stdout
-    Man,
+    /// Write a manual page to stdout
+    Man(ManArguments),
 }
 
 /// A scene file, and what is different from it.
@@ -118,6 +118,25 @@ pub struct CompletionsArguments {
     /// Shell
     pub shell: Shell,
 }
+
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// Task whose page is written; that of kavics when absent
+    #[arg(value_name = "COMMAND", value_parser = TASKS)]
+    pub task: Option<String>,
+}
+
+/// The tasks that have a manual page.
+const TASKS: [&str; 8] = [
+    "check",
+    "pack",
+    "run",
+    "measure",
+    "report",
+    "schema",
+    "completions",
+    "man",
+];
 
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {

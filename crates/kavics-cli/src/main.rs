@@ -44,6 +44,6 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Report(arguments) => texts::report(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
-        Task::Man => texts::man(),
+        Task::Man(arguments) => texts::man(&arguments),
     }
 }

@@ -4,7 +4,9 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::Scene;
-use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
+use kavics_results::{
+    Recorded, ResultsFolder, RunState, StepRow, read_grains, write_steps, write_steps_csv,
+};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
@@ -13,6 +15,7 @@ use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
     let folder = ResultsFolder::open(&arguments.results)?;
+    folder.check_whole()?;
     let scene = scene_of(&folder, arguments.window.as_deref())?;
     let rows = measured_rows(&folder, &scene)?;
     match &arguments.output {
@@ -20,6 +23,12 @@ pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
         None => stdout().write_all(&write_steps_csv(&rows))?,
     }
     scene_file::show_warnings(&scene.warnings);
+    if folder.record()?.state == RunState::Running {
+        let last = rows.last().map_or(0, |row| row.step);
+        scene_file::show_warnings(&[format!(
+            "the run is under way or was broken off; the table ends with load step {last}"
+        )]);
+    }
     Ok(())
 }
 

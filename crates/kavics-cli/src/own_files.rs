@@ -19,19 +19,19 @@ pub fn named(text: &str) -> String {
         .get_mut("grains")
         .and_then(|grains| grains.get_mut("listed"))
         .and_then(|listed| listed.get_mut("file"));
-    let renamed = rename(listed, "grains/000000.parquet");
+    let renamed = listed.is_some_and(|file| rename(file, "grains/000000.parquet"));
     let compared = document
         .get_mut("compare")
         .and_then(|compare| compare.get_mut("file"));
-    if rename(compared, "compare.csv") || renamed {
+    if compared.is_some_and(|file| rename(file, "compare.csv")) || renamed {
         document.to_string()
     } else {
         text.to_owned()
     }
 }
 
-fn rename(file: Option<&mut Item>, name: &str) -> bool {
-    let Some(Item::Value(value)) = file else {
+fn rename(file: &mut Item, name: &str) -> bool {
+    let Item::Value(value) = file else {
         return false;
     };
     let mut renamed = Value::from(name);

@@ -130,6 +130,9 @@ fn completions_and_manual_page_go_to_stdout() {
         .success();
     let manual = answer(place.path(), &["man"]);
     assert!(manual.contains(".TH kavics 1"), "{manual}");
+    let run = answer(place.path(), &["man", "run"]);
+    assert!(run.contains(".TH kavics-run 1"), "{run}");
+    assert!(run.contains("force"), "{run}");
 }
 
 #[test]

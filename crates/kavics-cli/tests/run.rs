@@ -264,7 +264,7 @@ fn check_says_what_would_run() {
 #[test]
 fn a_written_pack_can_be_listed() {
     let place = place_with(BLOCK);
-    for file in ["pack.csv", "pack.parquet"] {
+    for file in ["pack.csv", "pack.parquet", "pack2.CSV"] {
         let output = kavics(place.path(), &["pack", "block.toml", "-o", file]);
         assert_eq!(status(&output), 0, "{}", text(&output.stderr));
         let listed = BLOCK.replace(
@@ -430,4 +430,48 @@ fn both_tables_of_the_summary_say_their_power_of_ten() {
         2,
         "{summary}"
     );
+}
+
+#[test]
+fn a_list_with_another_ending_is_refused() {
+    let listed = BLOCK.replace(
+        "[grains.hexagonal]\nradius = 1.0\nrows = [5, 4, 5, 4, 5, 4, 5]",
+        "[grains.listed]\nfile = \"pack.txt\"",
+    );
+    let place = place_with(&listed);
+    fs::write(place.path().join("pack.txt"), "x,y,radius\n").expect("room on the disk");
+    let output = kavics(place.path(), &["check", "block.toml"]);
+    assert_eq!(status(&output), 2);
+    let message = text(&output.stderr);
+    assert!(message.contains("ends in .csv or .parquet"), "{message}");
+}
+
+#[test]
+fn results_that_lack_a_table_are_not_reported() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let table = place.path().join("block.results/grains/000003.parquet");
+    fs::remove_file(table).expect("a table");
+    for task in ["report", "measure"] {
+        let output = kavics(place.path(), &[task, "block.results"]);
+        assert_eq!(status(&output), 4);
+        let message = text(&output.stderr);
+        assert!(
+            message.contains("grains/000003.parquet is missing"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn measuring_a_run_that_is_not_finished_says_so() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let path = place.path().join("block.results/run.json");
+    let record = fs::read_to_string(&path).expect("run.json");
+    let running = record.replace("\"done\"", "\"running\"");
+    fs::write(&path, running).expect("room on the disk");
+    let output = kavics(place.path(), &["measure", "block.results"]);
+    assert_eq!(status(&output), 0);
+    assert!(text(&output.stderr).contains("ends with load step 3"));
 }

@@ -24,7 +24,9 @@ use kavics_results::ResultsFolder;
 /// # Errors
 /// Results that cannot be read; a page that cannot be written.
 pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
-    let page = page::page(&ResultsFolder::open(folder)?)?;
+    let results = ResultsFolder::open(folder)?;
+    results.check_whole()?;
+    let page = page::page(&results)?;
     let usual = || folder.join("report.html");
     let path = output.map_or_else(usual, Path::to_owned);
     kavics_results::publish(&path, page.as_bytes())?;

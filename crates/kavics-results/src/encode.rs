@@ -66,6 +66,32 @@ fn properties<R>(columns: &[Column<R>]) -> WriterProperties {
     properties.build()
 }
 
+/// Format of a table, by the ending of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    /// The format of the file at `path`.
+    ///
+    /// # Errors
+    /// Another ending.
+    pub(crate) fn of(path: &Path) -> Result<Self, ResultsError> {
+        let ending = path.extension().unwrap_or_default();
+        if ending.eq_ignore_ascii_case("csv") {
+            Ok(Self::Csv)
+        } else if ending.eq_ignore_ascii_case("parquet") {
+            Ok(Self::Parquet)
+        } else {
+            Err(ResultsError::UnknownEnding {
+                path: path.to_owned(),
+            })
+        }
+    }
+}
+
 /// Writes a file aside, syncs it and renames it to `path`. A link stays and what it leads to is written; what is
 /// no regular file, such as a device or a pipe, is written to as it is.
 ///
