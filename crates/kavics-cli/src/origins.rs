@@ -121,4 +121,12 @@ mod tests {
         );
         assert_eq!(moved("= help: 4 of | them"), "= help: 4 of | them");
     }
+
+    #[test]
+    fn other_ends_of_lines_change_no_number() {
+        let (old, new) = ("a = 1\r\n\r\nb = 2\r\n", "d = 2\na = 1\n\nb = 2\n");
+        let origins = Origins::of_file(old).changed(old, new, 0);
+        let moved = origins.relocate(" --> s.toml:4:1", "s.toml", &["d=2".to_owned()]);
+        assert_eq!(moved, " --> s.toml:3:1");
+    }
 }
