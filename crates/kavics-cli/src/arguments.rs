@@ -12,6 +12,9 @@ Exit status:
   3  no equilibrium; the results are valid up to the load step named
   4  a file could not be read or written";
 
+/// More threads than any machine has, and fewer than one can start.
+const MOST_THREADS: usize = 1024;
+
 /// Quasi-static mechanics of granular and cemented assemblies
 #[derive(Debug, Parser)]
 #[command(name = "kavics", version, after_help = STATUS)]
@@ -36,8 +39,8 @@ pub enum Task {
     Schema,
     /// Write completions for a shell to stdout
     Completions(CompletionsArguments),
-    /// Write the manual page to stdout
-    Man,
+    /// Write a manual page to stdout
+    Man(ManArguments),
 }
 
 /// A scene file, and what is different from it.
@@ -116,9 +119,28 @@ pub struct CompletionsArguments {
     pub shell: Shell,
 }
 
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// Task whose page is written; that of kavics when absent
+    #[arg(value_name = "COMMAND", value_parser = TASKS)]
+    pub task: Option<String>,
+}
+
+/// The tasks that have a manual page.
+const TASKS: [&str; 8] = [
+    "check",
+    "pack",
+    "run",
+    "measure",
+    "report",
+    "schema",
+    "completions",
+    "man",
+];
+
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
-        Ok(count @ 1..) => Ok(count),
-        _ => Err("expected a whole number from 1".to_owned()),
+        Ok(count @ 1..=MOST_THREADS) => Ok(count),
+        _ => Err(format!("expected a whole number from 1 to {MOST_THREADS}")),
     }
 }

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::scene_file;
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    let scene = scene_file::read(&arguments.scene)?;
+    let (scene, _) = scene_file::read(&arguments.scene)?;
     let counts = Counts::of(&scene);
     let mut out = stdout().lock();
     for (name, value) in counts.lines() {

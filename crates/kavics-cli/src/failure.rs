@@ -65,6 +65,8 @@ impl Failure {
         if let Some(
             ResultsError::Exists { .. }
             | ResultsError::NotResults { .. }
+            | ResultsError::NotOfARun { .. }
+            | ResultsError::InUse { .. }
             | ResultsError::OtherScene { .. }
             | ResultsError::UnknownEnding { .. },
         ) = results

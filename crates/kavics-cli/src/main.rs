@@ -2,15 +2,19 @@
 
 mod arguments;
 mod check;
+mod compared;
 mod failure;
 mod measure;
+mod origins;
 mod overrides;
+mod own_files;
 mod pack;
 mod run;
 mod scene_file;
 mod summary;
 mod texts;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -22,8 +26,10 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match perform(arguments.task) {
         Ok(()) => ExitCode::SUCCESS,
+        // Who stops reading, as head does, has what it wanted.
+        Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            scene_file::say(&format!("{failure}\n"));
             failure.status()
         }
     }
@@ -38,6 +44,6 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Report(arguments) => texts::report(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
-        Task::Man => texts::man(),
+        Task::Man(arguments) => texts::man(&arguments),
     }
 }

@@ -4,15 +4,18 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::Scene;
-use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
+use kavics_results::{
+    Recorded, ResultsFolder, RunState, StepRow, read_grains, write_steps, write_steps_csv,
+};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::Failure;
-use crate::scene_file;
+use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
     let folder = ResultsFolder::open(&arguments.results)?;
+    folder.check_whole()?;
     let scene = scene_of(&folder, arguments.window.as_deref())?;
     let rows = measured_rows(&folder, &scene)?;
     match &arguments.output {
@@ -20,6 +23,12 @@ pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
         None => stdout().write_all(&write_steps_csv(&rows))?,
     }
     scene_file::show_warnings(&scene.warnings);
+    if folder.record()?.state == RunState::Running {
+        let last = rows.last().map_or(0, |row| row.step);
+        scene_file::show_warnings(&[format!(
+            "the run is under way or was broken off; the table ends with load step {last}"
+        )]);
+    }
     Ok(())
 }
 
@@ -44,29 +53,18 @@ fn measured_rows(folder: &ResultsFolder, scene: &Scene) -> Result<Vec<StepRow>, 
 
 /// The scene of the results. What it read from other files is read from the folder.
 fn scene_of(folder: &ResultsFolder, window: Option<&str>) -> Result<Scene, Failure> {
-    let text = with_own_files(&folder.scene()?, window)?;
+    let text = in_window(&own_files::named(&folder.scene()?), window)?;
     let name = folder.path().join("scene.toml");
     Scene::parse(&text, &name.to_string_lossy(), folder.path(), &read_grains)
         .map_err(Failure::Scene)
 }
 
-fn with_own_files(text: &str, window: Option<&str>) -> Result<String, Failure> {
-    let Ok(mut document) = text.parse::<DocumentMut>() else {
+fn in_window(text: &str, window: Option<&str>) -> Result<String, Failure> {
+    let (Some(window), Ok(mut document)) = (window, text.parse::<DocumentMut>()) else {
         return Ok(text.to_owned());
     };
-    let listed = document
-        .get("grains")
-        .and_then(|grains| grains.get("listed"));
-    if listed.is_some() {
-        document["grains"]["listed"]["file"] = toml_edit::value("grains/000000.parquet");
-    }
-    if document.contains_key("compare") {
-        document["compare"]["file"] = toml_edit::value("compare.csv");
-    }
-    if let Some(window) = window {
-        let measure = document.entry("measure").or_insert_with(toml_edit::table);
-        measure["window"] = Item::Value(parse_window(window)?);
-    }
+    let measure = document.entry("measure").or_insert_with(toml_edit::table);
+    measure["window"] = Item::Value(parse_window(window)?);
     Ok(document.to_string())
 }
 

@@ -3,23 +3,37 @@
 use toml_edit::{DocumentMut, Item, Key, Table, Value};
 
 use crate::failure::Failure;
+use crate::origins::Origins;
+
+/// A text with values replaced.
+#[derive(Clone, Debug)]
+pub struct Changed {
+    /// The text.
+    pub text: String,
+    /// Where its lines come from.
+    pub origins: Origins,
+}
 
 /// `text` with every override in place. A text that is no TOML comes back as it is: the scene's own check says
 /// what is wrong with it, and where.
-pub fn apply(text: &str, overrides: &[String]) -> Result<String, Failure> {
-    let Ok(mut document) = text.parse::<DocumentMut>() else {
-        return Ok(text.to_owned());
+pub fn apply(text: &str, overrides: &[String]) -> Result<Changed, Failure> {
+    let mut changed = Changed {
+        text: text.to_owned(),
+        origins: Origins::of_file(text),
     };
-    if overrides.is_empty() {
-        return Ok(text.to_owned());
-    }
-    for given in overrides {
+    for (number, given) in overrides.iter().enumerate() {
+        let Ok(mut document) = changed.text.parse::<DocumentMut>() else {
+            return Ok(changed);
+        };
         set(document.as_item_mut(), given).map_err(|reason| Failure::Override {
             given: given.clone(),
             reason,
         })?;
+        let text = document.to_string();
+        changed.origins = changed.origins.changed(&changed.text, &text, number);
+        changed.text = text;
     }
-    Ok(document.to_string())
+    Ok(changed)
 }
 
 fn set(scene: &mut Item, given: &str) -> Result<(), String> {
@@ -30,7 +44,7 @@ fn set(scene: &mut Item, given: &str) -> Result<(), String> {
     for key in tables {
         at = step_into(at, key)?;
     }
-    replace(at, last, parse_value(value.trim()))
+    replace(at, last, parse_value(value.trim())?)
 }
 
 /// The table or array element that `key` names; a table that is absent is made.
@@ -51,6 +65,15 @@ fn step_into<'a>(at: &'a mut Item, key: &Key) -> Result<&'a mut Item, String> {
 
 fn replace(at: &mut Item, key: &Key, mut value: Value) -> Result<(), String> {
     let name = key.get();
+    if at.is_array_of_tables() {
+        let Value::InlineTable(table) = value else {
+            return Err(format!(
+                "element {name} of the list is a table; expected e.g. {{ name = \"press\" }}"
+            ));
+        };
+        *element(at, name)? = Item::Table(table.into_table());
+        return Ok(());
+    }
     if is_array(at) {
         *element(at, name)? = Item::Value(value);
         return Ok(());
@@ -78,9 +101,15 @@ fn element<'a>(array: &'a mut Item, number: &str) -> Result<&'a mut Item, String
         .ok_or_else(|| format!("the list has no element {index}"))
 }
 
-/// A TOML value; what is none is a string, so that `title=Two discs` needs no quotes within quotes.
-fn parse_value(text: &str) -> Value {
-    text.parse().unwrap_or_else(|_| Value::from(text))
+/// A TOML value; what does not begin like one is a string, so that `title=Two discs` needs no quotes within quotes.
+fn parse_value(text: &str) -> Result<Value, String> {
+    match text.parse() {
+        Ok(value) => Ok(value),
+        Err(_) if text.starts_with(['[', '{', '"', '\'']) => {
+            Err("the value is not TOML; a bracket or a quote may be missing".to_owned())
+        }
+        Err(_) => Ok(Value::from(text)),
+    }
 }
 
 #[cfg(test)]
@@ -88,7 +117,8 @@ mod tests {
     use super::apply;
 
     fn applied(text: &str, given: &str) -> String {
-        apply(text, &[given.to_owned()]).expect("a right override")
+        let changed = apply(text, &[given.to_owned()]);
+        changed.expect("a right override").text
     }
 
     #[test]
@@ -130,5 +160,17 @@ mod tests {
     #[test]
     fn words_need_no_quotes() {
         assert_eq!(applied("", "title=Two discs"), "title = \"Two discs\"\n");
+    }
+
+    #[test]
+    fn a_table_of_a_list_is_replaced_by_a_table_alone() {
+        let text = "[[stage]]\nfactors = [1.0]\n";
+        let refused = |given: &str| apply(text, &[given.to_owned()]).is_err();
+        assert!(refused("stage.0=5"));
+        assert!(refused("seed=[1,"));
+        assert_eq!(
+            applied(text, "stage.0={ factors = [2.0] }"),
+            "[[stage]]\nfactors = [2.0]\n"
+        );
     }
 }

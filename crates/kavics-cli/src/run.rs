@@ -1,41 +1,49 @@
 //! `kavics run`: the equilibria of a scene, measured and written.
 
-use std::io::{Write, stdout};
+use std::io::{self, Write, stdout};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
 use kavics::measure::{Snapshot, Window, grain_stress, measures};
 use kavics::scene::Scene;
-use kavics_results::{Options, Results, ResultsFolder, RunState, check_room};
+use kavics_results::{Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room};
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
-use crate::{scene_file, summary};
+use crate::scene_file::say;
+use crate::{own_files, scene_file, summary};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
     let folder = arguments.output.clone().unwrap_or_else(usual);
     check_room(&folder, arguments.force)?;
     let threads = scene_file::start_threads(arguments.threads)?;
-    let scene = scene_file::read(&arguments.scene)?;
+    let (mut scene, table) = scene_file::read(&arguments.scene)?;
+    check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
+    scene.text = own_files::named(&scene.text);
     let options = Options {
         threads,
         replace: arguments.force,
     };
     let mut results = Results::create(&folder, &scene, options)?;
-    let failure = follow(&scene, &mut results, arguments.json)?;
-    let warnings = results.warnings().to_vec();
+    let mut lines = JsonLines::new(arguments.json);
+    let failure = follow(&scene, &mut results, &mut lines)?;
+    let lone = table.map(|table| table.unmatched(results.steps()));
+    for lone in lone.unwrap_or_default() {
+        results.warn(format!("compare.csv: {lone}"));
+    }
+    let warnings = results.warnings();
     let state = match failure {
         None => RunState::Done,
         Some(_) => RunState::NoEquilibrium,
     };
     let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
-    eprint!("{}", summary::summary(&steps));
+    say(&summary::summary(&steps));
     scene_file::show_warnings(&warnings);
     finish_report(&folder)?;
     match failure {
-        None => Ok(()),
+        None => lines.end(),
         Some(error) => Err(Failure::NoEquilibrium {
             error,
             last: steps.last().map_or(0, |row| row.step),
@@ -48,7 +56,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
 fn follow(
     scene: &Scene,
     results: &mut Results<'_>,
-    json: bool,
+    lines: &mut JsonLines,
 ) -> Result<Option<SolveError>, Failure> {
     let window = Window::new(scene.window.clone(), scene.assembly.grains.len());
     let bar = progress_bar(scene);
@@ -62,8 +70,8 @@ fn follow(
         };
         push(scene, &window, &equilibrium, results)?;
         bar.set_position(equilibrium.step as u64);
-        if json && equilibrium.step > 0 {
-            write_json(results)?;
+        if equilibrium.step > 0 {
+            lines.write(results.steps());
         }
     }
     bar.finish_and_clear();
@@ -103,21 +111,43 @@ fn progress_bar(scene: &Scene) -> ProgressBar {
     ProgressBar::new(steps as u64).with_style(style.expect("a template that is known to be right"))
 }
 
-fn write_json(results: &Results<'_>) -> Result<(), Failure> {
-    if let Some(row) = results.steps().last() {
-        let mut out = stdout().lock();
-        writeln!(out, "{}", row.to_json())?;
-        out.flush()?;
+/// A JSON object per load step on stdout. A stdout that takes no more does not end the run.
+struct JsonLines {
+    wanted: bool,
+    failure: Option<io::Error>,
+}
+
+impl JsonLines {
+    fn new(wanted: bool) -> Self {
+        Self {
+            wanted,
+            failure: None,
+        }
     }
-    Ok(())
+
+    /// Writes the last of the load steps.
+    fn write(&mut self, steps: &[StepRow]) {
+        let Some(row) = steps.last().filter(|_| self.wanted) else {
+            return;
+        };
+        let mut out = stdout().lock();
+        if let Err(error) = writeln!(out, "{}", row.to_json()).and_then(|()| out.flush()) {
+            self.wanted = false;
+            self.failure = Some(error);
+        }
+    }
+
+    fn end(self) -> Result<(), Failure> {
+        self.failure.map_or(Ok(()), |error| Err(error.into()))
+    }
 }
 
 fn finish_report(folder: &Path) -> Result<(), Failure> {
     let report = kavics_report::write(folder, None)?;
     let compared = kavics_report::Comparison::read(&ResultsFolder::open(folder)?)?;
     if let Some(compared) = compared {
-        eprint!("{}", summary::compared(&compared));
+        say(&summary::compared(&compared));
     }
-    eprintln!("report: {}", report.display());
+    say(&format!("report: {}\n", report.display()));
     Ok(())
 }

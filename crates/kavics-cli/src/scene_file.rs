@@ -1,34 +1,55 @@
 //! From the command line to a scene.
 
 use std::fs;
+use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
 use kavics::assembly::Grain;
 use kavics::ids::PerGrain;
 use kavics::scene::{Scene, SceneError};
+use kavics_report::ComparedTable;
 use kavics_results::read_grains;
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
-use crate::overrides;
+use crate::overrides::Changed;
+use crate::{compared, overrides, own_files};
 
-/// Reads the scene file, with what `--set` says.
-pub fn read(arguments: &SceneArguments) -> Result<Scene, Failure> {
+/// Reads the scene file, with what `--set` says, and the table that it is compared with.
+pub fn read(arguments: &SceneArguments) -> Result<(Scene, Option<ComparedTable>), Failure> {
     with_text(arguments, |text, name, folder| {
-        Scene::parse(text, name, folder, &read_grains)
+        let mut scene = Scene::parse(text, name, folder, &read_grains).map_err(Failure::Scene)?;
+        let Some(path) = scene.compare.clone() else {
+            return Ok((scene, None));
+        };
+        let table = compared::read(&path, text, name)?;
+        let warnings = table.warnings().iter();
+        let of_table = warnings.map(|warning| format!("compare.csv: {warning}"));
+        scene.warnings.extend(of_table);
+        Ok((scene, Some(table)))
     })
 }
 
 /// Reads no more of the scene file than places the grains.
 pub fn place_grains(arguments: &SceneArguments) -> Result<PerGrain<Grain>, Failure> {
     with_text(arguments, |text, name, folder| {
-        Scene::place_grains(text, name, folder, &read_grains)
+        Scene::place_grains(text, name, folder, &read_grains).map_err(Failure::Scene)
     })
+}
+
+/// The files that a run of the scene reads: the scene itself, and those it names.
+pub fn files_read(arguments: &SceneArguments, scene: &Scene) -> Vec<PathBuf> {
+    let folder = arguments.scene.parent().unwrap_or(Path::new(""));
+    let listed = own_files::listed(&scene.text).map(|file| folder.join(file));
+    let mut files = vec![arguments.scene.clone()];
+    files.extend(listed);
+    files.extend(scene.compare.clone());
+    files
 }
 
 fn with_text<T>(
     arguments: &SceneArguments,
-    read: impl FnOnce(&str, &str, &Path) -> Result<T, SceneError>,
+    read: impl FnOnce(&str, &str, &Path) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let path = &arguments.scene;
     let text = fs::read_to_string(path).map_err(|source| {
@@ -37,9 +58,16 @@ fn with_text<T>(
             source,
         })
     })?;
-    let text = overrides::apply(&text, &arguments.set)?;
+    let Changed { text, origins } = overrides::apply(&text, &arguments.set)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    read(&text, &path.to_string_lossy(), folder).map_err(Failure::Scene)
+    let name = path.to_string_lossy();
+    read(&text, &name, folder).map_err(|failure| match failure {
+        Failure::Scene(SceneError::Wrong(message)) if !arguments.set.is_empty() => {
+            let message = origins.relocate(&message, &name, &arguments.set);
+            Failure::Scene(SceneError::Wrong(message))
+        }
+        other => other,
+    })
 }
 
 /// Where results of the scene go when nothing else is said: `NAME.results` in the working folder.
@@ -58,15 +86,20 @@ pub fn start_threads(count: Option<usize>) -> Result<usize, Failure> {
     Ok(rayon::current_num_threads())
 }
 
+/// Writes to stderr; a stderr that nobody reads any more is no reason to stop.
+pub fn say(text: &str) {
+    let _ = stderr().write_all(text.as_bytes());
+}
+
 /// Warnings shown in full; a long run may repeat one at every load step.
 const WARNINGS_SHOWN: usize = 12;
 
 /// Shows what the user should know.
 pub fn show_warnings(warnings: &[String]) {
     for warning in warnings.iter().take(WARNINGS_SHOWN) {
-        eprintln!("warning: {warning}");
+        say(&format!("warning: {warning}\n"));
     }
     if let Some(more @ 1..) = warnings.len().checked_sub(WARNINGS_SHOWN) {
-        eprintln!("warning: and {more} more");
+        say(&format!("warning: and {more} more\n"));
     }
 }

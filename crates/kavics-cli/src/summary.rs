@@ -76,8 +76,12 @@ fn components(parts: StressPartition) -> Vec<f64> {
 }
 
 fn steps_table(steps: &[StepRow], scale: Scale) -> String {
+    let heading = match scale.heading().as_str() {
+        "" => String::new(),
+        heading => format!("load steps{heading}\n"),
+    };
     let mut text = format!(
-        "{:>5} {:>9} {:>5} {:>9} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
+        "{heading}{:>5} {:>9} {:>5} {:>9} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
         "step",
         "factor",
         "iter.",
@@ -186,7 +190,10 @@ pub fn compared(comparison: &Comparison) -> String {
         .iter()
         .all(|column| column.rows.is_empty())
     {
-        let _ = writeln!(text, "no row of the table has a {by} that the run reached");
+        let _ = writeln!(
+            text,
+            "no row of the table belongs to a load step of the run, matched by {by}"
+        );
         return text;
     }
     let _ = writeln!(

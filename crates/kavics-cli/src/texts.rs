@@ -4,12 +4,13 @@ use std::io::{Write, stdout};
 
 use clap::CommandFactory;
 
-use crate::arguments::{Arguments, CompletionsArguments, ReportArguments};
+use crate::arguments::{Arguments, CompletionsArguments, ManArguments, ReportArguments};
 use crate::failure::Failure;
+use crate::scene_file::say;
 
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let path = kavics_report::write(&arguments.results, arguments.output.as_deref())?;
-    eprintln!("report: {}", path.display());
+    say(&format!("report: {}\n", path.display()));
     Ok(())
 }
 
@@ -24,8 +25,12 @@ pub fn completions(arguments: &CompletionsArguments) -> Result<(), Failure> {
     Ok(stdout().write_all(&text)?)
 }
 
-pub fn man() -> Result<(), Failure> {
+pub fn man(arguments: &ManArguments) -> Result<(), Failure> {
+    let mut command = Arguments::command();
+    command.build();
+    let task = arguments.task.as_ref();
+    let task = task.and_then(|task| command.find_subcommand(task).cloned());
     let mut text = Vec::new();
-    clap_mangen::Man::new(Arguments::command()).render(&mut text)?;
+    clap_mangen::Man::new(task.unwrap_or(command)).render(&mut text)?;
     Ok(stdout().write_all(&text)?)
 }

@@ -61,6 +61,14 @@ fn no_threads_are_wrong_usage() {
 }
 
 #[test]
+fn more_threads_than_can_start_are_wrong_usage() {
+    let many = ["run", "block.toml", "--threads", "100000"];
+    let answer = answer(place().path(), &many);
+    assert!(answer.starts_with("status 2"), "{answer}");
+    assert!(answer.contains("from 1 to 1024"), "{answer}");
+}
+
+#[test]
 fn a_missing_scene_is_named() {
     let place = place();
     insta::assert_snapshot!(answer(place.path(), &["run", "block.toml"]));
@@ -130,6 +138,9 @@ fn completions_and_manual_page_go_to_stdout() {
         .success();
     let manual = answer(place.path(), &["man"]);
     assert!(manual.contains(".TH kavics 1"), "{manual}");
+    let run = answer(place.path(), &["man", "run"]);
+    assert!(run.contains(".TH kavics-run 1"), "{run}");
+    assert!(run.contains("force"), "{run}");
 }
 
 #[test]

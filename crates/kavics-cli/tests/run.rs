@@ -264,7 +264,7 @@ fn check_says_what_would_run() {
 #[test]
 fn a_written_pack_can_be_listed() {
     let place = place_with(BLOCK);
-    for file in ["pack.csv", "pack.parquet"] {
+    for file in ["pack.csv", "pack.parquet", "pack2.CSV"] {
         let output = kavics(place.path(), &["pack", "block.toml", "-o", file]);
         assert_eq!(status(&output), 0, "{}", text(&output.stderr));
         let listed = BLOCK.replace(
@@ -289,4 +289,189 @@ fn a_compared_table_stands_in_the_summary() {
     assert_eq!(status(&output), 0, "{summary}");
     assert!(summary.contains("# made up"), "{summary}");
     assert!(summary.contains("-36.000000"), "{summary}");
+}
+
+#[test]
+fn force_replaces_nothing_that_the_run_needs_or_the_user_wrote() {
+    let place = place_with(BLOCK);
+    let results = place.path().join("block.results");
+    assert_eq!(status(&kavics(place.path(), &["run", "block.toml"])), 0);
+    let before = names(&results);
+    let scene = ["run", "block.results/scene.toml", "--force"];
+    let own = kavics(
+        place.path(),
+        &[&scene[..], &["-o", "block.results"]].concat(),
+    );
+    assert_eq!(status(&own), 2, "{}", text(&own.stderr));
+    let here = kavics(&results, &["run", "../block.toml", "--force", "-o", "."]);
+    assert_eq!(status(&here), 2, "{}", text(&here.stderr));
+    assert_eq!(names(&results), before);
+    fs::write(results.join("notes.txt"), "all of it").expect("room on the disk");
+    let forced = kavics(place.path(), &["run", "block.toml", "--force"]);
+    assert_eq!(status(&forced), 2, "{}", text(&forced.stderr));
+    assert!(text(&forced.stderr).contains("notes.txt"));
+    assert!(results.join("steps.parquet").is_file());
+}
+
+#[test]
+fn the_scene_of_the_results_runs_again() {
+    let listed = BLOCK.replace(
+        "[grains.hexagonal]\nradius = 1.0\nrows = [5, 4, 5, 4, 5, 4, 5]",
+        "[grains.listed]\nfile = \"pack.csv\"",
+    );
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["pack", "block.toml", "-o", "pack.csv"]);
+    let listed = format!("{listed}\n[compare]\nfile = \"table.csv\"\n");
+    fs::write(place.path().join("listed.toml"), listed).expect("room on the disk");
+    let table = "load_factor,stress_yy\n1.2,-36.0\n";
+    fs::write(place.path().join("table.csv"), table).expect("room on the disk");
+    for arguments in [
+        ["run", "listed.toml", "-o", "one"],
+        ["run", "one/scene.toml", "-o", "two"],
+    ] {
+        let run = kavics(place.path(), &arguments);
+        assert_eq!(status(&run), 0, "{}", text(&run.stderr));
+    }
+    for file in ["scene.toml", "steps.parquet", "compare.csv"] {
+        let [one, two] =
+            ["one", "two"].map(|folder| fs::read(place.path().join(folder).join(file)));
+        assert_eq!(one.expect("a file"), two.expect("a file"), "{file}");
+    }
+}
+
+fn compared(place: &Path, table: &str) -> Output {
+    fs::write(place.join("table.csv"), table).expect("room on the disk");
+    kavics(place, &["run", "block.toml", "--force"])
+}
+
+#[test]
+fn a_table_that_cannot_be_compared_ends_before_the_run() {
+    let place = place_with(&format!("{BLOCK}\n[compare]\nfile = \"table.csv\"\n"));
+    for (table, reason) in [
+        (
+            "load_factor,stress_yy\n1.2,abc\n",
+            "table.csv: line 2, column `stress_yy`: \"abc\" is not a number",
+        ),
+        ("pressure\n1.0\n", "table.csv: no column has the name"),
+    ] {
+        let output = compared(place.path(), table);
+        let message = text(&output.stderr);
+        assert_eq!(status(&output), 2, "{message}");
+        assert!(message.contains(reason), "{message}");
+        assert!(message.contains("--> block.toml:36:8"), "{message}");
+        assert!(!place.path().join("block.results").exists());
+    }
+}
+
+#[test]
+fn rows_and_columns_that_are_not_compared_are_in_the_record() {
+    let place = place_with(&format!("{BLOCK}\n[compare]\nfile = \"table.csv\"\n"));
+    let output = compared(
+        place.path(),
+        "load_factor,stress_yy,stres_xx\n1.2,-36.0,1.0\n7.0,1.0,1.0\n",
+    );
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let results = ResultsFolder::open(&place.path().join("block.results")).expect("results");
+    let warnings = results.record().expect("run.json").warnings.join("\n");
+    assert!(warnings.contains("`stres_xx`"), "{warnings}");
+    assert!(warnings.contains("line 3 has no load step"), "{warnings}");
+}
+
+#[test]
+fn places_in_messages_are_those_of_the_file_or_of_the_command() {
+    let place = place_with(&BLOCK.replace("fix = [\"x\"]", "fixx = [\"x\"]"));
+    let tolerance = "equilibrium.tolernce=1";
+    let output = kavics(
+        place.path(),
+        &["check", "block.toml", "--set", "thickness=2.0"],
+    );
+    assert!(
+        text(&output.stderr).contains("--> block.toml:24:1"),
+        "{}",
+        text(&output.stderr)
+    );
+    fs::write(place.path().join("block.toml"), BLOCK).expect("room on the disk");
+    let output = kavics(place.path(), &["check", "block.toml", "--set", tolerance]);
+    let message = text(&output.stderr);
+    assert!(
+        message.contains("--> --set equilibrium.tolernce=1"),
+        "{message}"
+    );
+    assert!(!message.contains("block.toml"), "{message}");
+}
+
+#[test]
+fn a_reader_of_json_that_leaves_does_not_end_the_run() {
+    let place = place_with(BLOCK);
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("kavics"));
+    let mut run = command
+        .current_dir(place.path())
+        .args(["run", "block.toml", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the command runs");
+    drop(run.stdout.take());
+    assert!(run.wait().expect("the command runs").success());
+    let results = place.path().join("block.results");
+    let record = ResultsFolder::open(&results).and_then(|folder| folder.record());
+    assert_eq!(record.expect("run.json").state, RunState::Done);
+    assert!(results.join("report.html").is_file());
+}
+
+#[test]
+fn both_tables_of_the_summary_say_their_power_of_ten() {
+    let place = place_with(BLOCK);
+    let small = "load.0.normal=[-3e-5, -3e-5]";
+    let output = kavics(place.path(), &["run", "block.toml", "--set", small]);
+    let summary = text(&output.stderr);
+    assert_eq!(
+        summary.matches("(stresses in 1e-6)").count(),
+        2,
+        "{summary}"
+    );
+}
+
+#[test]
+fn a_list_with_another_ending_is_refused() {
+    let listed = BLOCK.replace(
+        "[grains.hexagonal]\nradius = 1.0\nrows = [5, 4, 5, 4, 5, 4, 5]",
+        "[grains.listed]\nfile = \"pack.txt\"",
+    );
+    let place = place_with(&listed);
+    fs::write(place.path().join("pack.txt"), "x,y,radius\n").expect("room on the disk");
+    let output = kavics(place.path(), &["check", "block.toml"]);
+    assert_eq!(status(&output), 2);
+    let message = text(&output.stderr);
+    assert!(message.contains("ends in .csv or .parquet"), "{message}");
+}
+
+#[test]
+fn results_that_lack_a_table_are_not_reported() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let table = place.path().join("block.results/grains/000003.parquet");
+    fs::remove_file(table).expect("a table");
+    for task in ["report", "measure"] {
+        let output = kavics(place.path(), &[task, "block.results"]);
+        assert_eq!(status(&output), 4);
+        let message = text(&output.stderr);
+        assert!(
+            message.contains("grains/000003.parquet is missing"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn measuring_a_run_that_is_not_finished_says_so() {
+    let place = place_with(BLOCK);
+    kavics(place.path(), &["run", "block.toml"]);
+    let path = place.path().join("block.results/run.json");
+    let record = fs::read_to_string(&path).expect("run.json");
+    let running = record.replace("\"done\"", "\"running\"");
+    fs::write(&path, running).expect("room on the disk");
+    let output = kavics(place.path(), &["measure", "block.results"]);
+    assert_eq!(status(&output), 0);
+    assert!(text(&output.stderr).contains("ends with load step 3"));
 }

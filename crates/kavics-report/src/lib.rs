@@ -2,6 +2,7 @@
 //!
 //! In: a results folder. Out: an HTML file without scripts and without network.
 
+mod compared_table;
 mod comparison;
 mod curves;
 mod error;
@@ -13,6 +14,7 @@ mod tensor;
 
 use std::path::{Path, PathBuf};
 
+pub use compared_table::{ComparedError, ComparedTable, MatchedBy};
 pub use comparison::{Compared, ComparedColumn, Comparison};
 pub use error::ReportError;
 use kavics_results::ResultsFolder;
@@ -22,7 +24,9 @@ use kavics_results::ResultsFolder;
 /// # Errors
 /// Results that cannot be read; a page that cannot be written.
 pub fn write(folder: &Path, output: Option<&Path>) -> Result<PathBuf, ReportError> {
-    let page = page::page(&ResultsFolder::open(folder)?)?;
+    let results = ResultsFolder::open(folder)?;
+    results.check_whole()?;
+    let page = page::page(&results)?;
     let usual = || folder.join("report.html");
     let path = output.map_or_else(usual, Path::to_owned);
     kavics_results::publish(&path, page.as_bytes())?;

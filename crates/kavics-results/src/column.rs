@@ -100,6 +100,11 @@ impl<R> Column<R> {
         }
     }
 
+    /// Whether its values are numbers, counts and ids included.
+    pub fn is_numeric(&self) -> bool {
+        !matches!(self.read, Read::Text(_))
+    }
+
     /// The value in `row` as text; empty where there is none.
     pub(crate) fn show(&self, row: &R) -> String {
         match &self.read {

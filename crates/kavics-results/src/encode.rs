@@ -1,7 +1,8 @@
 //! From rows and columns to Parquet, and from bytes to a file published whole.
 
 use std::collections::HashMap;
-use std::io::Write;
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -65,17 +66,53 @@ fn properties<R>(columns: &[Column<R>]) -> WriterProperties {
     properties.build()
 }
 
-/// Writes a file aside, syncs it and renames it to `path`.
+/// Format of a table, by the ending of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    /// The format of the file at `path`.
+    ///
+    /// # Errors
+    /// Another ending.
+    pub(crate) fn of(path: &Path) -> Result<Self, ResultsError> {
+        let ending = path.extension().unwrap_or_default();
+        if ending.eq_ignore_ascii_case("csv") {
+            Ok(Self::Csv)
+        } else if ending.eq_ignore_ascii_case("parquet") {
+            Ok(Self::Parquet)
+        } else {
+            Err(ResultsError::UnknownEnding {
+                path: path.to_owned(),
+            })
+        }
+    }
+}
+
+/// Writes a file aside, syncs it and renames it to `path`. A link stays and what it leads to is written; what is
+/// no regular file, such as a device or a pipe, is written to as it is.
 ///
 /// # Errors
 /// A file that cannot be written.
 pub fn publish(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
-    let write = || {
-        let mut file = AtomicWriteFile::open(path)?;
-        file.write_all(bytes)?;
-        file.commit()
+    let write = || match (fs::metadata(path), fs::symlink_metadata(path)) {
+        (Ok(found), _) if !found.is_file() => {
+            OpenOptions::new().write(true).open(path)?.write_all(bytes)
+        }
+        (Ok(_), _) => replace(&fs::canonicalize(path)?, bytes),
+        (Err(_), Ok(_)) => fs::write(path, bytes),
+        (Err(_), Err(_)) => replace(path, bytes),
     };
     write().map_err(ResultsError::unwritable(path))
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = AtomicWriteFile::open(path)?;
+    file.write_all(bytes)?;
+    file.commit()
 }
 
 /// Encodes rows and publishes them.

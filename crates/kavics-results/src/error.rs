@@ -20,6 +20,22 @@ pub enum ResultsError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The folder holds results and something else, which is left alone.
+    #[error("{} holds {}, which is no file of a run; nothing there is replaced", folder.display(), path.display())]
+    NotOfARun {
+        /// The folder.
+        folder: PathBuf,
+        /// What is no file of a run.
+        path: PathBuf,
+    },
+    /// The folder is to be replaced and holds what the run needs.
+    #[error("{} holds {}, which the run needs; nothing there is replaced", folder.display(), path.display())]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+        /// What the run needs.
+        path: PathBuf,
+    },
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
     Unreadable {
@@ -82,6 +98,12 @@ pub enum ResultsError {
         /// Rows that the scene makes.
         expected: usize,
     },
+    /// Results lack a table.
+    #[error("{} is missing: the results are not whole", path.display())]
+    Missing {
+        /// The table.
+        path: PathBuf,
+    },
     /// A file has an ending that no format belongs to.
     #[error("{}: expected a file that ends in .csv or .parquet", path.display())]
     UnknownEnding {
@@ -91,6 +113,19 @@ pub enum ResultsError {
 }
 
 impl ResultsError {
+    /// What is wrong with a file, for a message that names the file itself.
+    pub(crate) fn without_path(&self) -> String {
+        match self {
+            Self::Unreadable { source, .. } | Self::Unwritable { source, .. } => source.to_string(),
+            Self::Table { source, .. } => format!("not a Parquet file: {source}"),
+            Self::NoColumn { column, .. } => format!("no column is called \"{column}\""),
+            Self::WrongColumn { column, wanted, .. } => {
+                format!("column \"{column}\" does not hold {wanted}")
+            }
+            other => other.to_string(),
+        }
+    }
+
     pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Unreadable { path, source }

@@ -10,7 +10,8 @@ use arrow_schema::{DataType, SchemaRef};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
 use crate::ResultsError;
-use crate::record::RunRecord;
+use crate::record::{RunRecord, RunState};
+use crate::room::RECORDED;
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -261,6 +262,31 @@ impl ResultsFolder {
         }
         steps.sort_unstable();
         Ok(steps)
+    }
+
+    /// Checks that no recorded table of a run that has ended is missing: the state before loading and the last load step are always
+    /// recorded, and each recorded load step has grains, contacts and sides.
+    ///
+    /// # Errors
+    /// A table that is missing; tables that cannot be read.
+    pub fn check_whole(&self) -> Result<(), ResultsError> {
+        if self.record()?.state == RunState::Running {
+            return Ok(());
+        }
+        let mut wanted = self.recorded_steps()?;
+        let last = self.steps()?.integers("step")?.last().copied().flatten();
+        if let Some(last) = last.and_then(|step| usize::try_from(step).ok()) {
+            wanted.extend([0, last]);
+        }
+        for step in wanted {
+            for table in RECORDED {
+                let path = recorded_path(&self.path, table, step);
+                if !path.is_file() {
+                    return Err(ResultsError::Missing { path });
+                }
+            }
+        }
+        Ok(())
     }
 
     fn recorded(&self, table: &str, step: usize) -> Result<Columns, ResultsError> {

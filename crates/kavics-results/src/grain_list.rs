@@ -6,7 +6,7 @@ use std::path::Path;
 use kavics::assembly::Grain;
 
 use crate::column::{Column, Unit};
-use crate::encode::{publish, publish_table};
+use crate::encode::{Format, publish, publish_table};
 use crate::{Columns, ResultsError};
 
 /// Reads x, y and radius of grains from a Parquet file with columns of these names.
@@ -14,8 +14,11 @@ use crate::{Columns, ResultsError};
 /// # Errors
 /// A sentence that says what is wrong with the file.
 pub fn read_grains(path: &Path) -> Result<Vec<[f64; 3]>, String> {
-    let table = Columns::read(path).map_err(|error| error.to_string())?;
-    let column = |name: &str| table.numbers(name).map_err(|error| error.to_string());
+    if !matches!(Format::of(path), Ok(Format::Parquet)) {
+        return Err("expected a file that ends in .csv or .parquet".to_owned());
+    }
+    let table = Columns::read(path).map_err(|error| error.without_path())?;
+    let column = |name: &str| table.numbers(name).map_err(|error| error.without_path());
     let (x, y, radius) = (column("x")?, column("y")?, column("radius")?);
     Ok((0..table.len())
         .map(|row| [x[row], y[row], radius[row]])
@@ -27,12 +30,9 @@ pub fn read_grains(path: &Path) -> Result<Vec<[f64; 3]>, String> {
 /// # Errors
 /// Another ending; a file that cannot be written.
 pub fn write_grains(path: &Path, grains: &[Grain]) -> Result<(), ResultsError> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("parquet") => publish_table(path, &columns(), grains),
-        Some("csv") => publish(path, grains_csv(grains).as_bytes()),
-        _ => Err(ResultsError::UnknownEnding {
-            path: path.to_owned(),
-        }),
+    match Format::of(path)? {
+        Format::Parquet => publish_table(path, &columns(), grains),
+        Format::Csv => publish(path, grains_csv(grains).as_bytes()),
     }
 }
 

@@ -19,9 +19,10 @@ use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
+use crate::room::{RECORDED, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
-use crate::warning::warning_text;
+use crate::warning::SolverWarnings;
 
 /// Tables that grow are written again at most this often.
 const BETWEEN_WRITES: Duration = Duration::from_millis(500);
@@ -52,6 +53,7 @@ pub struct Results<'a> {
     broken: usize,
     held: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
+    solver_warnings: SolverWarnings,
     log: Log,
     written: Instant,
 }
@@ -64,7 +66,7 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
-        for name in ["grains", "contacts", "sides"] {
+        for name in RECORDED {
             let path = folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -80,6 +82,7 @@ impl<'a> Results<'a> {
             broken: 0,
             held: held_grains(scene),
             unrecorded: None,
+            solver_warnings: SolverWarnings::default(),
             log: Log::open(),
             written: Instant::now(),
         };
@@ -147,9 +150,10 @@ impl<'a> Results<'a> {
         &self.steps
     }
 
-    /// What the user should know so far: of the scene, then of the load steps.
-    pub fn warnings(&self) -> &[String] {
-        &self.record.warnings
+    /// What the user should know so far: of the scene, then of the load steps, each warning once.
+    pub fn warnings(&self) -> Vec<String> {
+        let known = self.record.warnings.iter().cloned();
+        known.chain(self.solver_warnings.texts()).collect()
     }
 
     /// Adds a sentence that the user should know.
@@ -187,10 +191,9 @@ impl<'a> Results<'a> {
                 event,
             });
         }
-        let warnings = equilibrium.warnings.iter();
-        self.record
-            .warnings
-            .extend(warnings.map(|warning| warning_text(step, warning)));
+        for warning in &equilibrium.warnings {
+            self.solver_warnings.add(step, warning);
+        }
     }
 
     fn step_row(&self, equilibrium: &Equilibrium, measures: &Measures) -> StepRow {
@@ -339,7 +342,11 @@ impl<'a> Results<'a> {
             let columns = iterate_columns();
             publish_table(&path("iterations.parquet"), &columns, &self.iterates)?;
         }
-        let mut record = serde_json::to_string_pretty(&self.record).expect("words are JSON");
+        let record = RunRecord {
+            warnings: self.warnings(),
+            ..self.record.clone()
+        };
+        let mut record = serde_json::to_string_pretty(&record).expect("words are JSON");
         record.push('\n');
         publish(&path("run.json"), record.as_bytes())?;
         publish(&path("log.ndjson"), self.log.text().as_bytes())
@@ -360,36 +367,6 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         failure: None,
         warnings: scene.warnings.clone(),
     }
-}
-
-/// Whether results can be written to `folder`: it is not there, or empty, or results that are to be replaced.
-/// Nothing is touched.
-///
-/// # Errors
-/// A results folder that is not to be replaced; any other folder with something in it; a file.
-pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
-    let empty = match fs::read_dir(folder) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(_) => !folder.exists(),
-    };
-    let folder = folder.to_owned();
-    if empty {
-        Ok(())
-    } else if !folder.join("run.json").is_file() {
-        Err(ResultsError::NotResults { folder })
-    } else if replace {
-        Ok(())
-    } else {
-        Err(ResultsError::Exists { folder })
-    }
-}
-
-fn make_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
-    check_room(folder, replace)?;
-    if folder.exists() {
-        fs::remove_dir_all(folder).map_err(ResultsError::unwritable(folder))?;
-    }
-    Ok(())
 }
 
 /// Grains of which some freedom is held or moved.

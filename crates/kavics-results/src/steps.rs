@@ -6,7 +6,7 @@ use kavics::equilibrium::Energy;
 use kavics::measure::{Measures, StressPartition, SymmetricTensor, Tensor};
 
 use crate::column::{AsObject, Column, Unit};
-use crate::encode::{publish, publish_table};
+use crate::encode::{Format, publish, publish_table};
 use crate::{Columns, ResultsError, ResultsFolder};
 
 /// A row of `steps`.
@@ -248,12 +248,9 @@ fn works() -> Vec<Column<StepRow>> {
 /// # Errors
 /// Another ending; a file that cannot be written.
 pub fn write_steps(path: &Path, rows: &[StepRow]) -> Result<(), ResultsError> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("parquet") => publish_table(path, &step_columns(), rows),
-        Some("csv") => publish(path, &write_steps_csv(rows)),
-        _ => Err(ResultsError::UnknownEnding {
-            path: path.to_owned(),
-        }),
+    match Format::of(path)? {
+        Format::Parquet => publish_table(path, &step_columns(), rows),
+        Format::Csv => publish(path, &write_steps_csv(rows)),
     }
 }
 

@@ -1,33 +1,100 @@
 //! Warnings of the solver in words.
 
+use std::mem::discriminant;
+
 use kavics::equilibrium::Warning;
 
-/// What a warning of load step `step` says.
-pub fn warning_text(step: usize, warning: &Warning) -> String {
+/// Warnings of the load steps, each once with all its load steps.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SolverWarnings {
+    list: Vec<(Warning, Vec<usize>)>,
+}
+
+impl SolverWarnings {
+    /// Adds a warning of load step `step`.
+    pub(crate) fn add(&mut self, step: usize, warning: &Warning) {
+        let same = |known: &Warning| discriminant(known) == discriminant(warning);
+        match self.list.iter_mut().find(|(known, _)| same(known)) {
+            Some((known, steps)) => {
+                if count(warning) > count(known) {
+                    *known = warning.clone();
+                }
+                if steps.last() != Some(&step) {
+                    steps.push(step);
+                }
+            }
+            None => self.list.push((warning.clone(), vec![step])),
+        }
+    }
+
+    /// The warnings in words, in the order in which they first came.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = String> + '_ {
+        let warnings = self.list.iter();
+        warnings.map(|(warning, steps)| warning_text(warning, steps))
+    }
+}
+
+/// What a warning of some load steps says; the count is the largest among them.
+fn warning_text(warning: &Warning, steps: &[usize]) -> String {
+    let up_to = if steps.len() > 1 { "up to " } else { "" };
+    let count = |word| format!("{up_to}{}", counted(count(warning), word));
     let what = match warning {
-        Warning::RegularisedPivots { count } => {
-            format!(
-                "{} that no load moves held in place",
-                counted(*count, "floppy mode")
-            )
+        Warning::RegularisedPivots { .. } => {
+            format!("{} that no load moves held in place", count("floppy mode"))
         }
-        Warning::ShearFloor { contacts } => {
-            format!(
-                "shear modulus at its floor in {}",
-                counted(*contacts, "contact")
-            )
+        Warning::ShearFloor { .. } => {
+            format!("shear modulus at its floor in {}", count("contact"))
         }
-        Warning::SecondOrderWork { contacts } => {
-            format!(
-                "second-order work negative in {}",
-                counted(*contacts, "contact")
-            )
+        Warning::SecondOrderWork { .. } => {
+            format!("second-order work negative in {}", count("contact"))
         }
     };
-    format!("load step {step}: {what}")
+    let plural = if steps.len() == 1 { "" } else { "s" };
+    format!("load step{plural} {}: {what}", ranges(steps))
+}
+
+fn count(warning: &Warning) -> usize {
+    match warning {
+        Warning::RegularisedPivots { count } => *count,
+        Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
+    }
+}
+
+/// Rising numbers in short: "1, 3 to 7".
+fn ranges(steps: &[usize]) -> String {
+    let runs = steps.chunk_by(|a, b| a + 1 == *b);
+    let texts: Vec<String> = runs
+        .map(|run| match run {
+            [first, .., last] => format!("{first} to {last}"),
+            _ => run.iter().map(ToString::to_string).collect(),
+        })
+        .collect();
+    texts.join(", ")
 }
 
 fn counted(count: usize, word: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {word}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_stands_once_with_its_load_steps() {
+        let mut warnings = SolverWarnings::default();
+        for (step, contacts) in [(1, 2), (3, 5), (4, 1), (4, 1)] {
+            warnings.add(step, &Warning::ShearFloor { contacts });
+        }
+        warnings.add(4, &Warning::RegularisedPivots { count: 1 });
+        let texts: Vec<String> = warnings.texts().collect();
+        assert_eq!(
+            texts,
+            [
+                "load steps 1, 3 to 4: shear modulus at its floor in up to 5 contacts",
+                "load step 4: 1 floppy mode that no load moves held in place"
+            ]
+        );
+    }
 }

@@ -238,3 +238,45 @@ fn force_and_displacement_of_a_load_are_conjugate() {
     let displacement = actions.numbers("displacement").unwrap()[1];
     assert!((displacement - expected).abs() < 1e-14, "{displacement}");
 }
+
+#[test]
+fn only_files_of_a_run_are_taken_away() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(3, 3);
+    block::write(&folder, &scene);
+    let replace = Options {
+        threads: 1,
+        replace: true,
+    };
+    fs::write(folder.join("notes.txt"), "all of it").expect("room on the disk");
+    assert!(matches!(
+        Results::create(&folder, &scene, replace),
+        Err(ResultsError::NotOfARun { .. })
+    ));
+    assert!(folder.join("steps.parquet").is_file());
+    fs::remove_file(folder.join("notes.txt")).expect("a file");
+    Results::create(&folder, &scene, replace).expect("room");
+    assert!(!folder.join("grains/000001.parquet").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_and_what_is_no_file_is_not_replaced() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    use std::os::unix::net::UnixListener;
+
+    let place = place();
+    let (page, link) = (place.path().join("page.html"), place.path().join("link"));
+    symlink("page.html", &link).expect("a link");
+    for text in ["one", "two"] {
+        kavics_results::publish(&link, text.as_bytes()).expect("a page");
+        assert_eq!(fs::read_to_string(&page).expect("a page"), text);
+        assert!(fs::symlink_metadata(&link).expect("a link").is_symlink());
+    }
+    let socket = place.path().join("socket");
+    let _listener = UnixListener::bind(&socket).expect("a socket");
+    assert!(kavics_results::publish(&socket, b"one").is_err());
+    let kind = fs::metadata(&socket).expect("a socket").file_type();
+    assert!(kind.is_socket());
+}

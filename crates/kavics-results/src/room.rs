@@ -1,0 +1,149 @@
+//! Room for a results folder: what may be replaced, and what is never touched.
+
+use std::fs::{self, DirEntry};
+use std::path::{Path, PathBuf};
+
+use crate::ResultsError;
+
+/// Folders of tables, a file a recorded load step.
+pub(crate) const RECORDED: [&str; 3] = ["grains", "contacts", "sides"];
+
+/// The other files of a run.
+const FILES: [&str; 9] = [
+    "scene.toml",
+    "run.json",
+    "steps.parquet",
+    "iterations.parquet",
+    "actions.parquet",
+    "events.parquet",
+    "compare.csv",
+    "log.ndjson",
+    "report.html",
+];
+
+/// Whether results can be written to `folder`: it is not there, or empty, or results that are to be replaced and
+/// nothing else. Nothing is touched.
+///
+/// # Errors
+/// A results folder that is not to be replaced, or holds files of something else; any other folder with
+/// something in it; a file.
+pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
+    if is_empty(folder) {
+        return Ok(());
+    }
+    if !folder.join("run.json").is_file() {
+        return Err(ResultsError::NotResults {
+            folder: folder.to_owned(),
+        });
+    }
+    if !replace {
+        return Err(ResultsError::Exists {
+            folder: folder.to_owned(),
+        });
+    }
+    files_of_a_run(folder).map(|_| ())
+}
+
+/// Whether results that are to be replaced hold none of the files that the run reads, and not the working folder.
+/// Nothing is touched.
+///
+/// # Errors
+/// The first of `read` that lies in `folder`.
+pub fn check_apart(folder: &Path, read: &[PathBuf]) -> Result<(), ResultsError> {
+    let Ok(place) = fs::canonicalize(folder) else {
+        return Ok(());
+    };
+    if is_empty(folder) {
+        return Ok(());
+    }
+    let within = |path: &Path| fs::canonicalize(path).is_ok_and(|path| path.starts_with(&place));
+    let in_use = |path: &Path| ResultsError::InUse {
+        folder: folder.to_owned(),
+        path: path.to_owned(),
+    };
+    match read.iter().find(|path| within(path)) {
+        Some(path) => Err(in_use(path)),
+        None if within(Path::new(".")) => Err(in_use(Path::new("the working folder"))),
+        None => Ok(()),
+    }
+}
+
+/// Takes away the files of an earlier run, and nothing else; the folder itself stays.
+pub(crate) fn make_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
+    check_room(folder, replace)?;
+    if is_empty(folder) {
+        return Ok(());
+    }
+    // Without run.json the rest would be taken for something else, so it goes last.
+    let mut files = files_of_a_run(folder)?;
+    files.sort_by_key(|path| path.ends_with("run.json"));
+    for file in files {
+        fs::remove_file(&file).map_err(ResultsError::unwritable(&file))?;
+    }
+    Ok(())
+}
+
+fn is_empty(folder: &Path) -> bool {
+    match fs::read_dir(folder) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(_) => fs::symlink_metadata(folder).is_err(),
+    }
+}
+
+/// All files in `folder`, where all are of a run.
+fn files_of_a_run(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
+    let mut files = Vec::new();
+    for entry in entries(folder)? {
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if is_folder && RECORDED.contains(&name.as_str()) {
+            for table in entries(&entry.path())? {
+                let name = table.file_name().to_string_lossy().into_owned();
+                take(folder, &table, is_table(&name), &mut files)?;
+            }
+        } else {
+            take(folder, &entry, is_file_of_a_run(&name), &mut files)?;
+        }
+    }
+    Ok(files)
+}
+
+fn entries(folder: &Path) -> Result<Vec<DirEntry>, ResultsError> {
+    let listed = fs::read_dir(folder).and_then(Iterator::collect);
+    listed.map_err(ResultsError::unreadable(folder))
+}
+
+fn take(
+    folder: &Path,
+    entry: &DirEntry,
+    known: bool,
+    files: &mut Vec<PathBuf>,
+) -> Result<(), ResultsError> {
+    if known && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        files.push(entry.path());
+        return Ok(());
+    }
+    Err(ResultsError::NotOfARun {
+        folder: folder.to_owned(),
+        path: entry.path(),
+    })
+}
+
+fn is_file_of_a_run(name: &str) -> bool {
+    FILES
+        .iter()
+        .any(|file| *file == name || is_left_of(name, file))
+}
+
+fn is_table(name: &str) -> bool {
+    let name = name.strip_prefix('.').unwrap_or(name);
+    let number = name.split_once(".parquet").map(|(number, _)| number);
+    number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// Whether `name` is what a run that was broken off while it published `file` may leave: `.file.random`.
+fn is_left_of(name: &str, file: &str) -> bool {
+    name.strip_prefix('.')
+        .and_then(|name| name.strip_prefix(file))
+        .is_some_and(|rest| rest.starts_with('.'))
+}
