@@ -5,19 +5,29 @@
 
 use uom::si::f64::{Acceleration, Angle, Energy, Force, Length, Mass, Pressure, Ratio, Time};
 
-/// Powers of mass, length and time.
+/// Powers of mass, length, time and angle; an angle is told from a plain number, so that degrees stand for nothing else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Powers {
     mass: i32,
     length: i32,
     time: i32,
+    angle: i32,
 }
 
 impl Powers {
     const NONE: Self = Self::new(0, 0, 0);
+    const ANGLE: Self = Self {
+        angle: 1,
+        ..Self::NONE
+    };
 
     const fn new(mass: i32, length: i32, time: i32) -> Self {
-        Self { mass, length, time }
+        Self {
+            mass,
+            length,
+            time,
+            angle: 0,
+        }
     }
 
     fn plus(self, other: Self, power: i32) -> Self {
@@ -25,11 +35,12 @@ impl Powers {
             mass: self.mass + power * other.mass,
             length: self.length + power * other.length,
             time: self.time + power * other.time,
+            angle: self.angle + power * other.angle,
         }
     }
 
     fn is_sane(self) -> bool {
-        [self.mass, self.length, self.time]
+        [self.mass, self.length, self.time, self.angle]
             .iter()
             .all(|p| p.abs() <= 12)
     }
@@ -76,7 +87,8 @@ impl Dimension {
 
     fn powers(self) -> Powers {
         match self {
-            Self::Number | Self::Angle => Powers::NONE,
+            Self::Number => Powers::NONE,
+            Self::Angle => Powers::ANGLE,
             Self::Length => Powers::new(0, 1, 0),
             Self::Force => Powers::new(1, 1, -2),
             Self::Moment => Powers::new(1, 2, -2),
@@ -86,6 +98,12 @@ impl Dimension {
             Self::Density => Powers::new(1, -3, 0),
             Self::Acceleration => Powers::new(0, 1, -2),
         }
+    }
+
+    /// Whether a unit of these powers measures it; a bending stiffness is a moment, or one a radian.
+    fn has(self, powers: Powers) -> bool {
+        let a_radian = Powers::plus(self.powers(), Powers::ANGLE, -1);
+        powers == self.powers() || (self == Self::Moment && powers == a_radian)
     }
 
     /// What it is called in messages.
@@ -136,10 +154,10 @@ pub enum UnitError {
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     let (number, unit) = split(text).ok_or(UnitError::NoNumber)?;
     let (factor, powers) = factor(unit)?;
-    if powers == dimension.powers() {
+    if dimension.has(powers) {
         Ok(number * factor)
     } else {
-        let is = Dimension::ALL.into_iter().find(|d| d.powers() == powers);
+        let is = Dimension::ALL.into_iter().find(|d| d.has(powers));
         Err(UnitError::WrongDimension(is.map(Dimension::name)))
     }
 }
@@ -229,22 +247,22 @@ fn simple(name: &str) -> Result<(f64, Powers), UnitError> {
     };
     let text = format!("1 {name}");
     macro_rules! first_of {
-        ($($quantity:ident: $mass:literal $length:literal $time:literal,)*) => {
+        ($($quantity:ident: $powers:expr,)*) => {
             $(if let Ok(quantity) = text.parse::<$quantity>() {
-                return Ok((quantity.value, Powers::new($mass, $length, $time)));
+                return Ok((quantity.value, $powers));
             })*
         };
     }
     first_of! {
-        Length: 0 1 0,
-        Force: 1 1 -2,
-        Pressure: 1 -1 -2,
-        Mass: 1 0 0,
-        Time: 0 0 1,
-        Angle: 0 0 0,
-        Energy: 1 2 -2,
-        Acceleration: 0 1 -2,
-        Ratio: 0 0 0,
+        Length: Powers::new(0, 1, 0),
+        Force: Powers::new(1, 1, -2),
+        Pressure: Powers::new(1, -1, -2),
+        Mass: Powers::new(1, 0, 0),
+        Time: Powers::new(0, 0, 1),
+        Angle: Powers::ANGLE,
+        Energy: Powers::new(1, 2, -2),
+        Acceleration: Powers::new(0, 1, -2),
+        Ratio: Powers::NONE,
     }
     Err(UnitError::UnknownUnit(name.to_owned(), usual(name)))
 }
@@ -311,6 +329,17 @@ mod tests {
             parse("30 m/s", Dimension::Length),
             Err(UnitError::WrongDimension(None))
         );
+    }
+
+    #[test]
+    fn an_angle_is_no_plain_number() {
+        let is_angle = Err(UnitError::WrongDimension(Some("an angle")));
+        assert_eq!(parse("30 deg", Dimension::Number), is_angle);
+        assert_eq!(parse("1 rad", Dimension::Number), is_angle);
+        let is_number = Err(UnitError::WrongDimension(Some("a number without unit")));
+        assert_eq!(parse("3 %", Dimension::Angle), is_number);
+        assert!(parse("3 m·rad", Dimension::Length).is_err());
+        assert!(parse("3 rad/rad", Dimension::Number).is_ok());
     }
 
     #[test]
