@@ -155,6 +155,11 @@ pub fn short(value: f64) -> String {
 /// Keys that are known, but not available.
 const NOT_AVAILABLE: [&str; 3] = ["layer", "polygon", "fracture_energy"];
 
+/// A stiffness has a `layer`, only a scene has none.
+fn is_available(name: &str, names: &[&str]) -> bool {
+    !NOT_AVAILABLE.contains(&name) || (name == "layer" && names.contains(&"modulus"))
+}
+
 /// What serde calls things, and what a user of scene files does.
 const WORDS: [(&str, &str); 8] = [
     ("invalid type: map", "invalid type: a table"),
@@ -191,7 +196,7 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             let names: Vec<&str> = names
                 .iter()
                 .copied()
-                .filter(|name| !NOT_AVAILABLE.contains(name))
+                .filter(|name| is_available(name, names))
                 .collect();
             let known = if names.is_empty() {
                 "nothing is expected here".to_owned()

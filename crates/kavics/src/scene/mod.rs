@@ -9,6 +9,7 @@ mod build_loading;
 mod check_actions;
 mod check_choice;
 mod check_contacts;
+mod check_dropped;
 mod check_grains;
 mod check_loading;
 mod check_property;
@@ -23,6 +24,7 @@ mod file;
 mod file_contacts;
 mod grain_list;
 mod loading_plan;
+mod named_file;
 mod rigid_motion;
 mod scatter;
 mod unit;
@@ -97,8 +99,7 @@ impl Scene {
         grain_lists: &ReadGrains<'_>,
     ) -> Result<Self, SceneError> {
         let file = parse_file(text, name)?;
-        build::scene(&file, text, folder, grain_lists)
-            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
+        build::scene(&file, text, folder, grain_lists).map_err(|checker| checker.error(text, name))
     }
 
     /// Only places the grains of a scene; contacts, loads and supports may be missing.
@@ -114,7 +115,7 @@ impl Scene {
         let file = parse_file(text, name)?;
         build::grains(&file, folder, grain_lists)
             .map(|placed| placed.grains)
-            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
+            .map_err(|checker| checker.error(text, name))
     }
 
     /// The equilibria of this scene, one load step after the other.
@@ -158,7 +159,7 @@ pub fn schema() -> String {
 /// What is wrong with a scene file. Its text shows the lines, marked; one block a mistake.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The file could not be read.
+    /// The file, or one that the scene names, could not be read.
     #[error("{}: {source}", path.display())]
     Unreadable {
         /// The file.
