@@ -201,7 +201,10 @@ impl Checker {
             self.push(Problem::at(
                 &list.span,
                 format!("`{key}` needs two numbers, not {}", list.value.len()),
-                "expected two numbers, such as `[0.0, 2.0]`",
+                match dimension {
+                    Dimension::ForcePerLength => "expected two numbers, such as `[-1.0, -1.0]`",
+                    _ => "expected two numbers, such as `[0.0, 2.0]`",
+                },
             ));
             return None;
         };
@@ -269,6 +272,21 @@ fn unit_problem(
 ) -> Problem {
     let expected = format!("expected {}", dimension.name());
     let problem = match error {
+        UnitError::TooLarge => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a magnitude of at most 1e30",
+        ),
+        UnitError::Comma => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a decimal point, not a comma",
+        ),
+        UnitError::LoneSign => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a unit on both sides of each `/`, `·` or `*`",
+        ),
         UnitError::NoNumber => Problem::at(span, format!("`{key}` cannot be \"{text}\""), expected),
         UnitError::UnknownUnit(unit, usual) => {
             Problem::at(span, format!("no unit is called `{unit}`"), expected).suggest(*usual)

@@ -92,6 +92,9 @@ fn shown(span: &Range<usize>, text: &str) -> Range<usize> {
     start..line
 }
 
+/// How many mistakes are told.
+const SHOWN: usize = 20;
+
 /// The mistakes found so far.
 #[derive(Debug, Default)]
 pub struct Problems {
@@ -112,7 +115,11 @@ impl Problems {
     /// All mistakes as the user sees them, in the order of their places.
     pub fn render(mut self, text: &str, name: &str) -> String {
         self.list.sort_by_key(|problem| problem.marks[0].span.start);
-        let blocks: Vec<String> = self.list.iter().map(|p| p.render(text, name)).collect();
+        let shown = self.list.iter().take(SHOWN);
+        let mut blocks: Vec<String> = shown.map(|p| p.render(text, name)).collect();
+        if let Some(more @ 1..) = self.list.len().checked_sub(SHOWN) {
+            blocks.push(format!("and {more} more"));
+        }
         blocks.join("\n\n")
     }
 }

@@ -130,10 +130,22 @@ impl Scene {
     }
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
-    std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
+/// The text of a scene file.
+///
+/// # Errors
+/// A file that cannot be read, or is not text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = std::fs::read(path).map_err(|source| SceneError::Unreadable {
         path: path.to_owned(),
         source,
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        SceneError::Wrong(format!(
+            "{}:{line}: this is not text in UTF-8",
+            path.display()
+        ))
     })
 }
 

@@ -148,11 +148,23 @@ pub enum UnitError {
     UnknownUnit(String, Option<&'static str>),
     /// The unit belongs to another dimension, with its name if it has one.
     WrongDimension(Option<&'static str>),
+    /// The number is too large.
+    TooLarge,
+    /// A decimal comma stands after the number.
+    Comma,
+    /// A sign has no unit beside it.
+    LoneSign,
 }
 
 /// The value of `text` in SI.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     let (number, unit) = split(text).ok_or(UnitError::NoNumber)?;
+    if number.is_infinite() {
+        return Err(UnitError::TooLarge);
+    }
+    if unit.starts_with(',') {
+        return Err(UnitError::Comma);
+    }
     let (factor, powers) = factor(unit)?;
     if dimension.has(powers) {
         Ok(number * factor)
@@ -167,12 +179,11 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let begins = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.');
     text.starts_with(begins).then_some(())?;
-    let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
+    let in_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let longest = text.find(|c| !in_number(c)).unwrap_or(text.len());
     // The longest beginning that is a number, so that the e of an exponent belongs to it.
-    ends.take(40)
-        .filter_map(|end| Some((text[..end].parse::<f64>().ok()?, text[end..].trim())))
-        .filter(|(number, _)| number.is_finite())
-        .last()
+    let mut ends = (1..=longest).rev();
+    ends.find_map(|end| Some((text[..end].parse().ok()?, text[end..].trim())))
 }
 
 /// The value of a unit in SI and its powers.
@@ -197,7 +208,7 @@ fn factor(unit: &str) -> Result<(f64, Powers), UnitError> {
         }
         rest = after.as_str();
         if rest.trim().is_empty() {
-            return Err(UnitError::UnknownUnit(unit.to_owned(), None));
+            return Err(UnitError::LoneSign);
         }
     }
     Ok((value, powers))
@@ -213,6 +224,8 @@ fn power(text: &str) -> (&str, i32) {
         ("^3", 3),
         ("^4", 4),
         ("^1", 1),
+        ("2", 2),
+        ("3", 3),
     ];
     let inverse = [
         ("^-1", -1),
@@ -238,11 +251,15 @@ const USUAL: [&str; 24] = [
 /// The value of a simple unit in SI and its powers.
 fn simple(name: &str) -> Result<(f64, Powers), UnitError> {
     if name.is_empty() {
-        return Err(UnitError::UnknownUnit(String::new(), None));
+        return Err(UnitError::LoneSign);
+    }
+    // A nautical mile, which nobody means.
+    if name == "M" {
+        return Err(UnitError::UnknownUnit(name.to_owned(), Some("m")));
     }
     let name = match name {
         "deg" => "°",
-        "um" => "µm",
+        "um" | "\u{3bc}m" => "µm",
         name => name,
     };
     let text = format!("1 {name}");
@@ -311,6 +328,10 @@ mod tests {
         close("0.1 rad", Dimension::Angle, 0.1);
         close("2 N·m/rad", Dimension::Moment, 2.0);
         close("1e3", Dimension::Number, 1e3);
+        close("2650 kg/m3", Dimension::Density, 2650.0);
+        close("9.81 m/s2", Dimension::Acceleration, 9.81);
+        close("3 \u{b5}m", Dimension::Length, 3e-6);
+        close("3 \u{3bc}m", Dimension::Length, 3e-6);
         close("3 %", Dimension::Number, 0.03);
         close(" 7 kg·m^-3 ", Dimension::Density, 7.0);
     }
@@ -355,10 +376,16 @@ mod tests {
             parse("3 furlongz", Dimension::Length),
             Err(UnitError::UnknownUnit("furlongz".into(), None))
         );
-        assert!(matches!(
-            parse("3 kN/", Dimension::Force),
-            Err(UnitError::UnknownUnit(..))
-        ));
+        for lone in ["3 kN/", "3 m**1", "3 /m"] {
+            assert_eq!(parse(lone, Dimension::Force), Err(UnitError::LoneSign));
+        }
+        assert_eq!(
+            parse("1e400 m", Dimension::Length),
+            Err(UnitError::TooLarge)
+        );
+        assert_eq!(parse("1,0 m", Dimension::Length), Err(UnitError::Comma));
+        assert_eq!(parse("-inf m", Dimension::Length), Err(UnitError::NoNumber));
+        assert!(parse("1 M", Dimension::Length).is_err());
         assert!(parse("3 m^2^2", Dimension::Length).is_err());
         assert!(parse("3 N//m", Dimension::Length).is_err());
     }
