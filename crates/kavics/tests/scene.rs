@@ -99,6 +99,19 @@ fn the_block_of_32_discs_is_built() {
 }
 
 #[test]
+fn a_zone_for_all_contacts_may_find_none_between_grains() {
+    let scene = parse(
+        "[box]\nwidth = 2.0\nheight = 2.0\n[grains.hexagonal]\nradius = 1.0\nrows = [1]\n\
+         [contact.cement.cemented]\nstiffness.layer = { normal = 1.0, shear = 0.5 }\n\
+         [[zone]]\ncontact = \"cement\"\n[side.bottom]\ncontact = \"cement\"\n\
+         [[load]]\nname = \"press\"\ngrains = { ids = [0] }\nforce = { y = -1.0 }\n\
+         [[stage]]\nfactors = [1.0]\n",
+    );
+    assert_eq!(scene.assembly.contacts.len(), 1);
+    assert!(scene.warnings[0].starts_with("the zone of `cement`"));
+}
+
+#[test]
 fn properties_stand_in_the_order_of_the_file() {
     let scene = three(
         "[contact.a.cohesionless]\nstiffness.direct = { normal = 3, shear = 2 }\nfriction = 0.5\n\

@@ -12,7 +12,7 @@ use super::check_run::{self, RunPlan, WindowPlan};
 use super::check_stages;
 use super::checker::{Bound, Checker};
 use super::choose;
-use super::diagnostic::{Problem, Problems};
+use super::diagnostic::Problem;
 use super::file::SceneFile;
 use super::loading_plan::LoadingPlan;
 use super::rigid_motion;
@@ -41,7 +41,7 @@ pub fn scene(
     text: &str,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
-) -> Result<Scene, Problems> {
+) -> Result<Scene, Checker> {
     let mut checker = Checker::default();
     let plan = plan(file, folder, &mut checker);
     let built = match plan {
@@ -55,7 +55,7 @@ pub fn scene(
             text: text.to_owned(),
             ..scene
         }),
-        _ => Err(checker.problems),
+        _ => Err(checker),
     }
 }
 
@@ -64,7 +64,7 @@ pub fn grains(
     file: &SceneFile,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
-) -> Result<PlacedGrains, Problems> {
+) -> Result<PlacedGrains, Checker> {
     let mut checker = Checker::default();
     let seed = seed(file, &mut checker);
     let tolerance = check_contacts::touching_tolerance(file, &mut checker);
@@ -75,7 +75,7 @@ pub fn grains(
         }
         _ => None,
     };
-    placed.ok_or(checker.problems)
+    placed.ok_or(checker)
 }
 
 fn seed(file: &SceneFile, checker: &mut Checker) -> Option<u64> {

@@ -6,6 +6,7 @@ use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use crate::assembly::{self, Assembly, Contact, ContactGraph, Partner, Side, Site};
 use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
+use crate::geometry::Vector;
 use crate::ids::{Id, PerContact, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
 
@@ -103,11 +104,7 @@ fn zoned(
         let draws = zone_stream(&mut seeds);
         let chosen = chosen(zone, graph, draws);
         if !chosen.contains(&true) {
-            checker.push(Problem::at(
-                &zone.span,
-                "this zone names no contact",
-                zone_expectation(graph),
-            ));
+            empty_zone(zone, plan, graph, checker);
         }
         for (property, chosen) in properties.iter_mut().zip(chosen) {
             if chosen {
@@ -152,16 +149,42 @@ fn chosen(zone: &ZonePlan, graph: &ContactGraph, mut draws: Stream) -> Vec<bool>
         .collect()
 }
 
-fn zone_expectation(graph: &ContactGraph) -> String {
-    let points = || {
-        let between = |site: &&Site| matches!(site.second, Partner::Grain(_));
-        graph
-            .sites
-            .iter()
-            .filter(between)
-            .map(|site| site.tangent_point)
+/// A zone for all contacts may find none between grains; one that chooses is a mistake then.
+fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, graph: &ContactGraph, checker: &mut Checker) {
+    let count = tangent_points(graph).count();
+    let expected = match zone.place {
+        ZonePlace::Everywhere => {
+            let name = &plan.properties[zone.property].property.name;
+            checker.warn(format!(
+                "the zone of `{name}` gives it to no contact: there is none between grains"
+            ));
+            return;
+        }
+        ZonePlace::Share(share) if count > 0 => {
+            format!("a share of {share} of {count} contacts; expected a larger one")
+        }
+        _ => where_contacts_lie(graph),
     };
-    let span = |value: fn(crate::geometry::Vector) -> f64| {
+    checker.push(Problem::at(
+        &zone.span,
+        "this zone names no contact",
+        expected,
+    ));
+}
+
+/// Contact points between grains.
+fn tangent_points(graph: &ContactGraph) -> impl Iterator<Item = Vector> {
+    let between = |site: &&Site| matches!(site.second, Partner::Grain(_));
+    graph
+        .sites
+        .iter()
+        .filter(between)
+        .map(|site| site.tangent_point)
+}
+
+fn where_contacts_lie(graph: &ContactGraph) -> String {
+    let points = || tangent_points(graph);
+    let span = |value: fn(Vector) -> f64| {
         points()
             .map(value)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {

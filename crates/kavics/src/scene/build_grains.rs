@@ -7,6 +7,7 @@ use super::ReadGrains;
 use super::check_grains::{DroppedPlan, GrainSource, GrainsPlan, SizesPlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
+use super::named_file::named_file;
 use super::value::Placed;
 use crate::assembly::{self, Grain, Side};
 use crate::geometry::Vector;
@@ -125,15 +126,7 @@ fn listed(
     grain_lists: &ReadGrains<'_>,
     checker: &mut Checker,
 ) -> Option<PerGrain<Grain>> {
-    let path = folder.join(&file.value);
-    if !path.is_file() {
-        checker.push(Problem::at(
-            &file.span,
-            format!("there is no file `{}`", file.value),
-            "expected a list of grains, its name relative to the scene's folder",
-        ));
-        return None;
-    }
+    let path = named_file(file, folder, "a list of grains", checker)?;
     let is_csv = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("csv"));

@@ -118,6 +118,14 @@ fn affine(
         }
     };
     let StrainFile { xx, xy, yx, yy } = &strain.value;
+    if [xx, xy, yx, yy].iter().all(|part| part.is_none()) {
+        checker.push(Problem::at(
+            &strain.span,
+            "a strain without a value",
+            "expected some of `xx`, `xy`, `yx` and `yy`",
+        ));
+        return None;
+    }
     let mut part = |number: &Option<Number>, key: &str| {
         checker.number_or(0.0, number.as_ref(), key, Dimension::Number, Bound::Any)
     };
@@ -206,6 +214,13 @@ fn edge_load(
     };
     let normal = values(&file.normal, "normal");
     let shear = values(&file.shear, "shear");
+    if let (Some([0.0, 0.0]), Some([0.0, 0.0])) = (normal, shear) {
+        checker.push(Problem::at(
+            &table.span,
+            format!("load `{}` is zero", file.name.value),
+            "expected `normal` or `shear` other than zero",
+        ));
+    }
     Some(LoadKind::Edge {
         edge: index?,
         span: edge.span.clone(),

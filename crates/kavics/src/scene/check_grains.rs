@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
+use super::check_dropped::{can_be_filled, dropped_plan};
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
-use super::file::{BoxFile, DroppedFile, GrainsFile, LatticeFile, SceneFile, SieveFile};
+use super::file::{BoxFile, DroppedFile, GrainsFile, LatticeFile, SceneFile};
 use super::unit::Dimension;
-use super::value::{ListOr, Placed, ValueOr};
+use super::value::{ListOr, Placed};
 
 /// The box and how it is filled.
 #[derive(Clone, Debug)]
@@ -94,6 +95,9 @@ pub fn grains(file: &SceneFile, checker: &mut Checker) -> Option<GrainsPlan> {
             .and(&span, "no `count`: grains fall until the box is full"),
         );
         return None;
+    }
+    if let (GrainSource::Dropped(dropped), Some(height), true) = (&source, height, filled) {
+        can_be_filled(dropped, width, height, &span, checker)?;
     }
     Some(GrainsPlan {
         width,
@@ -305,167 +309,4 @@ fn total(rows: &[Placed<usize>], span: &Range<usize>, checker: &mut Checker) -> 
         format!("expected at most {MOST_GRAINS} grains"),
     ));
     None
-}
-
-fn dropped_plan(table: &Placed<DroppedFile>, checker: &mut Checker) -> Option<DroppedPlan> {
-    enum Sizes<'a> {
-        Radius(&'a Placed<ValueOr<super::file::RadiiFile>>),
-        Sieve(&'a Placed<SieveFile>),
-    }
-    let file = &table.value;
-    let count = match &file.count {
-        None => Some(None),
-        Some(count) => checker.count(count, "count", 1).map(Some),
-    };
-    let tries = match &file.tries {
-        None => Some(1),
-        Some(tries) => checker.count(tries, "tries", 1),
-    };
-    let alternatives = [
-        (
-            "radius",
-            file.radius.as_ref().map(|r| (Sizes::Radius(r), &r.span)),
-        ),
-        (
-            "sieve",
-            file.sieve.as_ref().map(|s| (Sizes::Sieve(s), &s.span)),
-        ),
-    ];
-    let sizes = match checker.exactly_one(&table.span, "the size of the grains", alternatives)? {
-        Sizes::Radius(radius) => radii(radius, checker),
-        Sizes::Sieve(sieve) => sieve_curve(&sieve.value, checker),
-    };
-    let count = count?;
-    if count.is_some_and(|count| count > MOST_GRAINS) {
-        checker.push(Problem::at(
-            &file.count.as_ref()?.span,
-            "`count` has too many grains",
-            format!("expected at most {MOST_GRAINS} grains"),
-        ));
-        return None;
-    }
-    Some(DroppedPlan {
-        count,
-        sizes: sizes?,
-        tries: tries?,
-    })
-}
-
-fn radii(
-    radius: &Placed<ValueOr<super::file::RadiiFile>>,
-    checker: &mut Checker,
-) -> Option<SizesPlan> {
-    let (length, positive) = (Dimension::Length, Bound::Positive);
-    match &radius.value {
-        ValueOr::Value(value) => {
-            let radius = checker.quantity(value, &radius.span, "radius", length, positive)?;
-            Some(SizesPlan::Uniform(radius, radius))
-        }
-        ValueOr::Table(limits) => {
-            let from = checker.number(&limits.from, "from", length, positive);
-            let to = checker.number(&limits.to, "to", length, positive);
-            let (from, to) = (from?, to?);
-            if from > to {
-                checker.push(
-                    Problem::at(
-                        &limits.to.span,
-                        format!("the largest radius {to} is below the smallest, {from}"),
-                        format!("expected a radius of at least {from}"),
-                    )
-                    .and(&limits.from.span, "the smallest radius"),
-                );
-                return None;
-            }
-            Some(SizesPlan::Uniform(from, to))
-        }
-    }
-}
-
-fn sieve_curve(file: &SieveFile, checker: &mut Checker) -> Option<SizesPlan> {
-    let sphere = file.mass.as_ref().map_or(Some(false), |mass| {
-        checker.word(mass, "mass", &[("disc", false), ("sphere", true)])
-    });
-    let diameters: Option<Vec<f64>> = file
-        .diameter
-        .value
-        .iter()
-        .map(|d| checker.number(d, "diameter", Dimension::Length, Bound::Positive))
-        .collect();
-    let passing: Option<Vec<f64>> = file
-        .passing
-        .value
-        .iter()
-        .map(|p| checker.number(p, "passing", Dimension::Number, Bound::NonNegative))
-        .collect();
-    let (diameters, passing) = (diameters?, passing?);
-    sieve_lengths(file, checker)?;
-    for i in 1..diameters.len() {
-        if diameters[i] <= diameters[i - 1] {
-            checker.push(Problem::at(
-                &file.diameter.value[i].span,
-                format!(
-                    "diameter {} does not rise above {}",
-                    diameters[i],
-                    diameters[i - 1]
-                ),
-                "expected a larger diameter than the one before",
-            ));
-            return None;
-        }
-        if passing[i] < passing[i - 1] {
-            checker.push(Problem::at(
-                &file.passing.value[i].span,
-                format!(
-                    "the sieve curve falls from {} to {}",
-                    passing[i - 1],
-                    passing[i]
-                ),
-                "expected at least the share before",
-            ));
-            return None;
-        }
-    }
-    sieve_ends(file, &passing, checker)?;
-    Some(SizesPlan::Sieve {
-        diameters,
-        passing,
-        sphere: sphere?,
-    })
-}
-
-fn sieve_lengths(file: &SieveFile, checker: &mut Checker) -> Option<()> {
-    let (diameters, passing) = (file.diameter.value.len(), file.passing.value.len());
-    if diameters == passing && diameters >= 2 {
-        return Some(());
-    }
-    checker.push(
-        Problem::at(
-            &file.passing.span,
-            format!("a sieve curve with {diameters} diameters and {passing} shares"),
-            "expected a share for each of at least two diameters",
-        )
-        .and(&file.diameter.span, "the diameters"),
-    );
-    None
-}
-
-fn sieve_ends(file: &SieveFile, passing: &[f64], checker: &mut Checker) -> Option<()> {
-    let last = passing.len() - 1;
-    for (i, expected) in [(0, 0.0), (last, 1.0)] {
-        if passing[i] != expected {
-            checker.push(
-                Problem::at(
-                    &file.passing.value[i].span,
-                    format!(
-                        "the sieve curve runs from {} to {}",
-                        passing[0], passing[last]
-                    ),
-                    format!("expected {expected}"),
-                )
-                .help("the shares that pass run from 0 to 1"),
-            );
-            return None;
-        }
-    }
-    Some(())
 }

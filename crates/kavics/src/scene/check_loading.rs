@@ -42,7 +42,13 @@ fn names_differ(file: &SceneFile, checker: &mut Checker) {
     let mut seen: Vec<&Placed<String>> = Vec::new();
     for name in moves.chain(loads) {
         let first = seen.iter().find(|other| other.value == name.value);
-        if name.value == "weight" {
+        if name.value.is_empty() {
+            checker.push(Problem::at(
+                &name.span,
+                "a name is empty",
+                "expected a name for stages",
+            ));
+        } else if name.value == "weight" {
             checker.push(Problem::at(
                 &name.span,
                 "only the weight of the grains is called `weight`",

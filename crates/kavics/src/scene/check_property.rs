@@ -89,6 +89,13 @@ fn property(
             "expected another name",
         ));
     }
+    if name.value.is_empty() {
+        checker.push(Problem::at(
+            &name.span,
+            "a name is empty",
+            "expected a name for zones and sides",
+        ));
+    }
     let PropertyFile {
         cemented: bonded,
         cohesionless: loose,

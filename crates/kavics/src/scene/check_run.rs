@@ -6,8 +6,9 @@ use super::check_contacts::{Ranges, optional_range};
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
+use super::named_file::named_file;
 use super::unit::Dimension;
-use super::value::{Placed, Quantity, ValueOr};
+use super::value::{Number, Placed, Quantity, ValueOr};
 use crate::equilibrium::{Iteration, Settings};
 use crate::loading::Breakage;
 
@@ -58,7 +59,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
     let compare = match &file.compare {
         None => Some(None),
-        Some(table) => existing(&table.value.file, folder, checker).map(Some),
+        Some(table) => named_file(&table.value.file, folder, "a csv file", checker).map(Some),
     };
     let (settings, breakage) = solving?;
     Some(RunPlan {
@@ -75,9 +76,9 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
 
 fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, Breakage)> {
     let default = Settings::default();
-    let (number, positive) = (Dimension::Number, Bound::Positive);
+    let number = Dimension::Number;
     let tolerance = file.tolerance.as_ref();
-    let tolerance = checker.number_or(default.tolerance, tolerance, "tolerance", number, positive);
+    let tolerance = self::tolerance(tolerance, default.tolerance, checker);
     let ties = file.tie_tolerance.as_ref();
     let ties = checker.number_or(
         default.tie_tolerance,
@@ -128,6 +129,25 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         ..default
     };
     Some((settings, breakage?))
+}
+
+/// Least bound on the residual: a few roundings of double precision.
+const LEAST_TOLERANCE: f64 = 1e-14;
+
+fn tolerance(number: Option<&Number>, default: f64, checker: &mut Checker) -> Option<f64> {
+    let Some(number) = number else {
+        return Some(default);
+    };
+    let value = checker.number(number, "tolerance", Dimension::Number, Bound::Positive)?;
+    if value >= LEAST_TOLERANCE {
+        return Some(value);
+    }
+    checker.push(Problem::at(
+        &number.span,
+        format!("`tolerance` cannot be {value:e}"),
+        format!("expected at least {LEAST_TOLERANCE:e}; double precision reaches no less"),
+    ));
+    None
 }
 
 fn breakage(word: Option<&Placed<String>>, checker: &mut Checker) -> Option<Breakage> {
@@ -203,17 +223,4 @@ fn window_table(
             ))
         }
     }
-}
-
-fn existing(file: &Placed<String>, folder: &Path, checker: &mut Checker) -> Option<PathBuf> {
-    let path = folder.join(&file.value);
-    if path.is_file() {
-        return Some(path);
-    }
-    checker.push(Problem::at(
-        &file.span,
-        format!("there is no file `{}`", file.value),
-        "expected a csv file, its name relative to the scene's folder",
-    ));
-    None
 }

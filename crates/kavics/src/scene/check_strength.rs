@@ -110,8 +110,19 @@ fn positive(
     checker.number_or(default, number, key, Dimension::Number, Bound::Positive)
 }
 
+/// Below it the weakest contacts have no strength that a number can hold beside the others.
+const LEAST_SHAPE: f64 = 0.1;
+
 fn weibull(file: &WeibullFile, checker: &mut Checker) -> Option<Scatter> {
     let shape = positive(1.0, Some(&file.shape), "shape", checker);
+    if shape.is_some_and(|shape| shape < LEAST_SHAPE) {
+        checker.push(Problem::at(
+            &file.shape.span,
+            "`shape` is so small that strengths vanish",
+            format!("expected at least {LEAST_SHAPE}"),
+        ));
+        return None;
+    }
     let scale = positive(1.0, file.scale.as_ref(), "scale", checker);
     Some(Scatter::Weibull {
         shape: shape?,

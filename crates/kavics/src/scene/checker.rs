@@ -1,7 +1,10 @@
 //! Checks that many parts of a scene share; each adds what is wrong to the list and answers nothing then.
 
+use std::io;
 use std::ops::Range;
+use std::path::PathBuf;
 
+use super::SceneError;
 use super::diagnostic::{Problem, Problems, either, likely};
 use super::unit::{self, Dimension, UnitError};
 use super::value::{Number, Placed, Quantity};
@@ -27,6 +30,8 @@ pub struct Checker {
     pub problems: Problems,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// A file that the scene names, and why it could not be read.
+    pub unreadable: Option<(PathBuf, io::Error)>,
 }
 
 impl Checker {
@@ -38,6 +43,16 @@ impl Checker {
     /// Adds a warning.
     pub fn warn(&mut self, warning: impl Into<String>) {
         self.warnings.push(warning.into());
+    }
+
+    /// All that went wrong; mistakes come before a file that could not be read.
+    pub fn error(self, text: &str, name: &str) -> SceneError {
+        match self.unreadable {
+            Some((path, source)) if self.problems.is_empty() => {
+                SceneError::Unreadable { path, source }
+            }
+            _ => SceneError::Wrong(self.problems.render(text, name)),
+        }
     }
 
     /// A key that is known, but whose feature is not there.
@@ -95,9 +110,9 @@ impl Checker {
             _ if !value.is_finite() => "expected a finite number",
             Bound::Positive if value <= 0.0 => "expected a number above zero",
             Bound::NonNegative if value < 0.0 => "expected zero or a number above",
-            _ if value.abs() > LARGEST => "expected a number of at most 1e30",
+            _ if value.abs() > LARGEST => "expected a magnitude of at most 1e30",
             _ if value != 0.0 && value.abs() < LARGEST.recip() => {
-                "expected a number of at least 1e-30"
+                "expected zero or a magnitude of at least 1e-30"
             }
             _ => return Some(value),
         };
@@ -120,7 +135,17 @@ impl Checker {
     /// A whole number that is not below `least`.
     pub fn count(&mut self, count: &Placed<i64>, key: &str, least: i64) -> Option<usize> {
         // Far above what a machine holds, so that products stay in range.
-        let most = 1_000_000_000;
+        self.count_up_to(count, key, least, 1_000_000_000)
+    }
+
+    /// A whole number between two others.
+    pub fn count_up_to(
+        &mut self,
+        count: &Placed<i64>,
+        key: &str,
+        least: i64,
+        most: i64,
+    ) -> Option<usize> {
         if (least..=most).contains(&count.value) {
             return usize::try_from(count.value).ok();
         }
@@ -176,7 +201,10 @@ impl Checker {
             self.push(Problem::at(
                 &list.span,
                 format!("`{key}` needs two numbers, not {}", list.value.len()),
-                "expected two numbers, such as `[0.0, 2.0]`",
+                match dimension {
+                    Dimension::ForcePerLength => "expected two numbers, such as `[-1.0, -1.0]`",
+                    _ => "expected two numbers, such as `[0.0, 2.0]`",
+                },
             ));
             return None;
         };
@@ -244,6 +272,21 @@ fn unit_problem(
 ) -> Problem {
     let expected = format!("expected {}", dimension.name());
     let problem = match error {
+        UnitError::TooLarge => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a magnitude of at most 1e30",
+        ),
+        UnitError::Comma => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a decimal point, not a comma",
+        ),
+        UnitError::LoneSign => Problem::at(
+            span,
+            format!("`{key}` cannot be \"{text}\""),
+            "expected a unit on both sides of each `/`, `·` or `*`",
+        ),
         UnitError::NoNumber => Problem::at(span, format!("`{key}` cannot be \"{text}\""), expected),
         UnitError::UnknownUnit(unit, usual) => {
             Problem::at(span, format!("no unit is called `{unit}`"), expected).suggest(*usual)

@@ -92,6 +92,9 @@ fn shown(span: &Range<usize>, text: &str) -> Range<usize> {
     start..line
 }
 
+/// How many mistakes are told.
+const SHOWN: usize = 20;
+
 /// The mistakes found so far.
 #[derive(Debug, Default)]
 pub struct Problems {
@@ -112,7 +115,11 @@ impl Problems {
     /// All mistakes as the user sees them, in the order of their places.
     pub fn render(mut self, text: &str, name: &str) -> String {
         self.list.sort_by_key(|problem| problem.marks[0].span.start);
-        let blocks: Vec<String> = self.list.iter().map(|p| p.render(text, name)).collect();
+        let shown = self.list.iter().take(SHOWN);
+        let mut blocks: Vec<String> = shown.map(|p| p.render(text, name)).collect();
+        if let Some(more @ 1..) = self.list.len().checked_sub(SHOWN) {
+            blocks.push(format!("and {more} more"));
+        }
         blocks.join("\n\n")
     }
 }
@@ -155,6 +162,11 @@ pub fn short(value: f64) -> String {
 /// Keys that are known, but not available.
 const NOT_AVAILABLE: [&str; 3] = ["layer", "polygon", "fracture_energy"];
 
+/// A stiffness has a `layer`, only a scene has none.
+fn is_available(name: &str, names: &[&str]) -> bool {
+    !NOT_AVAILABLE.contains(&name) || (name == "layer" && names.contains(&"modulus"))
+}
+
 /// What serde calls things, and what a user of scene files does.
 const WORDS: [(&str, &str); 8] = [
     ("invalid type: map", "invalid type: a table"),
@@ -191,7 +203,7 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             let names: Vec<&str> = names
                 .iter()
                 .copied()
-                .filter(|name| !NOT_AVAILABLE.contains(name))
+                .filter(|name| is_available(name, names))
                 .collect();
             let known = if names.is_empty() {
                 "nothing is expected here".to_owned()

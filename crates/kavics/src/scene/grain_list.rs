@@ -19,6 +19,9 @@ pub fn read_csv(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     for (place, column) in places.iter_mut().zip(COLUMNS) {
         let found = header.iter().position(|name| name == column);
         *place = found.ok_or_else(|| missing(column, &header))?;
+        if header.iter().filter(|name| *name == column).count() > 1 {
+            return Err(format!("line 1: column `{column}` stands twice"));
+        }
     }
     let mut rows = Vec::new();
     for record in reader.records() {

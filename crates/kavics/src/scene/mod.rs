@@ -9,6 +9,7 @@ mod build_loading;
 mod check_actions;
 mod check_choice;
 mod check_contacts;
+mod check_dropped;
 mod check_grains;
 mod check_loading;
 mod check_property;
@@ -23,6 +24,7 @@ mod file;
 mod file_contacts;
 mod grain_list;
 mod loading_plan;
+mod named_file;
 mod rigid_motion;
 mod scatter;
 mod unit;
@@ -97,8 +99,7 @@ impl Scene {
         grain_lists: &ReadGrains<'_>,
     ) -> Result<Self, SceneError> {
         let file = parse_file(text, name)?;
-        build::scene(&file, text, folder, grain_lists)
-            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
+        build::scene(&file, text, folder, grain_lists).map_err(|checker| checker.error(text, name))
     }
 
     /// Only places the grains of a scene; contacts, loads and supports may be missing.
@@ -114,7 +115,7 @@ impl Scene {
         let file = parse_file(text, name)?;
         build::grains(&file, folder, grain_lists)
             .map(|placed| placed.grains)
-            .map_err(|problems| SceneError::Wrong(problems.render(text, name)))
+            .map_err(|checker| checker.error(text, name))
     }
 
     /// The equilibria of this scene, one load step after the other.
@@ -129,10 +130,22 @@ impl Scene {
     }
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
-    std::fs::read_to_string(path).map_err(|source| SceneError::Unreadable {
+/// The text of a scene file.
+///
+/// # Errors
+/// A file that cannot be read, or is not text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = std::fs::read(path).map_err(|source| SceneError::Unreadable {
         path: path.to_owned(),
         source,
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        SceneError::Wrong(format!(
+            "{}:{line}: this is not text in UTF-8",
+            path.display()
+        ))
     })
 }
 
@@ -158,7 +171,7 @@ pub fn schema() -> String {
 /// What is wrong with a scene file. Its text shows the lines, marked; one block a mistake.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The file could not be read.
+    /// The file, or one that the scene names, could not be read.
     #[error("{}: {source}", path.display())]
     Unreadable {
         /// The file.

@@ -5,19 +5,29 @@
 
 use uom::si::f64::{Acceleration, Angle, Energy, Force, Length, Mass, Pressure, Ratio, Time};
 
-/// Powers of mass, length and time.
+/// Powers of mass, length, time and angle; an angle is told from a plain number, so that degrees stand for nothing else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Powers {
     mass: i32,
     length: i32,
     time: i32,
+    angle: i32,
 }
 
 impl Powers {
     const NONE: Self = Self::new(0, 0, 0);
+    const ANGLE: Self = Self {
+        angle: 1,
+        ..Self::NONE
+    };
 
     const fn new(mass: i32, length: i32, time: i32) -> Self {
-        Self { mass, length, time }
+        Self {
+            mass,
+            length,
+            time,
+            angle: 0,
+        }
     }
 
     fn plus(self, other: Self, power: i32) -> Self {
@@ -25,11 +35,12 @@ impl Powers {
             mass: self.mass + power * other.mass,
             length: self.length + power * other.length,
             time: self.time + power * other.time,
+            angle: self.angle + power * other.angle,
         }
     }
 
     fn is_sane(self) -> bool {
-        [self.mass, self.length, self.time]
+        [self.mass, self.length, self.time, self.angle]
             .iter()
             .all(|p| p.abs() <= 12)
     }
@@ -76,7 +87,8 @@ impl Dimension {
 
     fn powers(self) -> Powers {
         match self {
-            Self::Number | Self::Angle => Powers::NONE,
+            Self::Number => Powers::NONE,
+            Self::Angle => Powers::ANGLE,
             Self::Length => Powers::new(0, 1, 0),
             Self::Force => Powers::new(1, 1, -2),
             Self::Moment => Powers::new(1, 2, -2),
@@ -86,6 +98,12 @@ impl Dimension {
             Self::Density => Powers::new(1, -3, 0),
             Self::Acceleration => Powers::new(0, 1, -2),
         }
+    }
+
+    /// Whether a unit of these powers measures it; a bending stiffness is a moment, or one a radian.
+    fn has(self, powers: Powers) -> bool {
+        let a_radian = Powers::plus(self.powers(), Powers::ANGLE, -1);
+        powers == self.powers() || (self == Self::Moment && powers == a_radian)
     }
 
     /// What it is called in messages.
@@ -130,16 +148,28 @@ pub enum UnitError {
     UnknownUnit(String, Option<&'static str>),
     /// The unit belongs to another dimension, with its name if it has one.
     WrongDimension(Option<&'static str>),
+    /// The number is too large.
+    TooLarge,
+    /// A decimal comma stands after the number.
+    Comma,
+    /// A sign has no unit beside it.
+    LoneSign,
 }
 
 /// The value of `text` in SI.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, UnitError> {
     let (number, unit) = split(text).ok_or(UnitError::NoNumber)?;
+    if number.is_infinite() {
+        return Err(UnitError::TooLarge);
+    }
+    if unit.starts_with(',') {
+        return Err(UnitError::Comma);
+    }
     let (factor, powers) = factor(unit)?;
-    if powers == dimension.powers() {
+    if dimension.has(powers) {
         Ok(number * factor)
     } else {
-        let is = Dimension::ALL.into_iter().find(|d| d.powers() == powers);
+        let is = Dimension::ALL.into_iter().find(|d| d.has(powers));
         Err(UnitError::WrongDimension(is.map(Dimension::name)))
     }
 }
@@ -149,12 +179,11 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let begins = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.');
     text.starts_with(begins).then_some(())?;
-    let ends = text.char_indices().map(|(i, c)| i + c.len_utf8());
+    let in_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let longest = text.find(|c| !in_number(c)).unwrap_or(text.len());
     // The longest beginning that is a number, so that the e of an exponent belongs to it.
-    ends.take(40)
-        .filter_map(|end| Some((text[..end].parse::<f64>().ok()?, text[end..].trim())))
-        .filter(|(number, _)| number.is_finite())
-        .last()
+    let mut ends = (1..=longest).rev();
+    ends.find_map(|end| Some((text[..end].parse().ok()?, text[end..].trim())))
 }
 
 /// The value of a unit in SI and its powers.
@@ -179,7 +208,7 @@ fn factor(unit: &str) -> Result<(f64, Powers), UnitError> {
         }
         rest = after.as_str();
         if rest.trim().is_empty() {
-            return Err(UnitError::UnknownUnit(unit.to_owned(), None));
+            return Err(UnitError::LoneSign);
         }
     }
     Ok((value, powers))
@@ -195,6 +224,8 @@ fn power(text: &str) -> (&str, i32) {
         ("^3", 3),
         ("^4", 4),
         ("^1", 1),
+        ("2", 2),
+        ("3", 3),
     ];
     let inverse = [
         ("^-1", -1),
@@ -220,31 +251,35 @@ const USUAL: [&str; 24] = [
 /// The value of a simple unit in SI and its powers.
 fn simple(name: &str) -> Result<(f64, Powers), UnitError> {
     if name.is_empty() {
-        return Err(UnitError::UnknownUnit(String::new(), None));
+        return Err(UnitError::LoneSign);
+    }
+    // A nautical mile, which nobody means.
+    if name == "M" {
+        return Err(UnitError::UnknownUnit(name.to_owned(), Some("m")));
     }
     let name = match name {
         "deg" => "°",
-        "um" => "µm",
+        "um" | "\u{3bc}m" => "µm",
         name => name,
     };
     let text = format!("1 {name}");
     macro_rules! first_of {
-        ($($quantity:ident: $mass:literal $length:literal $time:literal,)*) => {
+        ($($quantity:ident: $powers:expr,)*) => {
             $(if let Ok(quantity) = text.parse::<$quantity>() {
-                return Ok((quantity.value, Powers::new($mass, $length, $time)));
+                return Ok((quantity.value, $powers));
             })*
         };
     }
     first_of! {
-        Length: 0 1 0,
-        Force: 1 1 -2,
-        Pressure: 1 -1 -2,
-        Mass: 1 0 0,
-        Time: 0 0 1,
-        Angle: 0 0 0,
-        Energy: 1 2 -2,
-        Acceleration: 0 1 -2,
-        Ratio: 0 0 0,
+        Length: Powers::new(0, 1, 0),
+        Force: Powers::new(1, 1, -2),
+        Pressure: Powers::new(1, -1, -2),
+        Mass: Powers::new(1, 0, 0),
+        Time: Powers::new(0, 0, 1),
+        Angle: Powers::ANGLE,
+        Energy: Powers::new(1, 2, -2),
+        Acceleration: Powers::new(0, 1, -2),
+        Ratio: Powers::NONE,
     }
     Err(UnitError::UnknownUnit(name.to_owned(), usual(name)))
 }
@@ -293,6 +328,10 @@ mod tests {
         close("0.1 rad", Dimension::Angle, 0.1);
         close("2 N·m/rad", Dimension::Moment, 2.0);
         close("1e3", Dimension::Number, 1e3);
+        close("2650 kg/m3", Dimension::Density, 2650.0);
+        close("9.81 m/s2", Dimension::Acceleration, 9.81);
+        close("3 \u{b5}m", Dimension::Length, 3e-6);
+        close("3 \u{3bc}m", Dimension::Length, 3e-6);
         close("3 %", Dimension::Number, 0.03);
         close(" 7 kg·m^-3 ", Dimension::Density, 7.0);
     }
@@ -314,6 +353,17 @@ mod tests {
     }
 
     #[test]
+    fn an_angle_is_no_plain_number() {
+        let is_angle = Err(UnitError::WrongDimension(Some("an angle")));
+        assert_eq!(parse("30 deg", Dimension::Number), is_angle);
+        assert_eq!(parse("1 rad", Dimension::Number), is_angle);
+        let is_number = Err(UnitError::WrongDimension(Some("a number without unit")));
+        assert_eq!(parse("3 %", Dimension::Angle), is_number);
+        assert!(parse("3 m·rad", Dimension::Length).is_err());
+        assert!(parse("3 rad/rad", Dimension::Number).is_ok());
+    }
+
+    #[test]
     fn what_is_no_unit_is_refused() {
         assert_eq!(parse("GPa", Dimension::Stress), Err(UnitError::NoNumber));
         assert_eq!(parse("", Dimension::Stress), Err(UnitError::NoNumber));
@@ -326,10 +376,16 @@ mod tests {
             parse("3 furlongz", Dimension::Length),
             Err(UnitError::UnknownUnit("furlongz".into(), None))
         );
-        assert!(matches!(
-            parse("3 kN/", Dimension::Force),
-            Err(UnitError::UnknownUnit(..))
-        ));
+        for lone in ["3 kN/", "3 m**1", "3 /m"] {
+            assert_eq!(parse(lone, Dimension::Force), Err(UnitError::LoneSign));
+        }
+        assert_eq!(
+            parse("1e400 m", Dimension::Length),
+            Err(UnitError::TooLarge)
+        );
+        assert_eq!(parse("1,0 m", Dimension::Length), Err(UnitError::Comma));
+        assert_eq!(parse("-inf m", Dimension::Length), Err(UnitError::NoNumber));
+        assert!(parse("1 M", Dimension::Length).is_err());
         assert!(parse("3 m^2^2", Dimension::Length).is_err());
         assert!(parse("3 N//m", Dimension::Length).is_err());
     }
