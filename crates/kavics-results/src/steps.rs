@@ -162,7 +162,9 @@ fn scalars() -> Vec<Column<StepRow>> {
         measure("void_ratio", pure, |m| m.void_ratio),
         measure("graph_porosity", pure, |m| m.graph_porosity),
         measure("graph_porosity_printed", pure, |m| m.graph_porosity_printed),
-        measure("window_area", Unit::Area, |m| (m.window_area > 0.0).then_some(m.window_area)),
+        measure("window_area", Unit::Area, |m| {
+            (m.window_area > 0.0).then_some(m.window_area)
+        }),
     ]
 }
 

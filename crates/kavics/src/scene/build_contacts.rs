@@ -59,7 +59,14 @@ fn sides_touch(
         let Some(side_plan) = &plan.sides[id.index()] else {
             continue;
         };
-        if graph.sites.iter().any(|s| s.second == Partner::Side(id)) {
+        let joined = graph
+            .sites
+            .iter()
+            .filter(|s| s.second == Partner::Side(id))
+            .count();
+        if joined > 0 {
+            let reach = side_plan.reach * placed.mean_radius;
+            warn_of_grains_behind(placed, side, reach, joined, checker);
             continue;
         }
         let gap = placed
@@ -85,6 +92,29 @@ fn sides_touch(
                 side.name
             )),
         }
+    }
+}
+
+/// A grain within reach whose cell does not meet the side under it has others before it: it is not joined.
+fn warn_of_grains_behind(
+    placed: &PlacedGrains,
+    side: &Side,
+    reach: f64,
+    joined: usize,
+    checker: &mut Checker,
+) {
+    let gaps = placed
+        .grains
+        .values()
+        .iter()
+        .map(|grain| side.distance(grain.centre) - grain.radius);
+    let within = gaps.filter(|gap| *gap <= reach).count();
+    if within > joined {
+        checker.warn(format!(
+            "{} grains within reach of the {} side are not joined to it: others lie between",
+            within - joined,
+            side.name
+        ));
     }
 }
 
