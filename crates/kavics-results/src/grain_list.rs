@@ -14,12 +14,33 @@ use crate::{Columns, ResultsError};
 /// # Errors
 /// A sentence that says what is wrong with the file.
 pub fn read_grains(path: &Path) -> Result<Vec<[f64; 3]>, String> {
-    let table = Columns::read(path).map_err(|error| error.to_string())?;
-    let column = |name: &str| table.numbers(name).map_err(|error| error.to_string());
+    if !ends_in(path, "parquet") {
+        return Err("expected a file that ends in .csv or .parquet".to_owned());
+    }
+    let table = Columns::read(path).map_err(|error| without_path(&error, path))?;
+    let column = |name: &str| {
+        table
+            .numbers(name)
+            .map_err(|error| without_path(&error, path))
+    };
     let (x, y, radius) = (column("x")?, column("y")?, column("radius")?);
     Ok((0..table.len())
         .map(|row| [x[row], y[row], radius[row]])
         .collect())
+}
+
+fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// What is wrong, without the path that the caller names.
+fn without_path(error: &ResultsError, path: &Path) -> String {
+    let sentence = error.to_string();
+    match sentence.strip_prefix(&format!("{}: ", path.display())) {
+        Some(rest) => rest.to_owned(),
+        None => sentence,
+    }
 }
 
 /// Writes x, y and radius of grains to a file, csv or parquet by its ending.
@@ -27,12 +48,14 @@ pub fn read_grains(path: &Path) -> Result<Vec<[f64; 3]>, String> {
 /// # Errors
 /// Another ending; a file that cannot be written.
 pub fn write_grains(path: &Path, grains: &[Grain]) -> Result<(), ResultsError> {
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("parquet") => publish_table(path, &columns(), grains),
-        Some("csv") => publish(path, grains_csv(grains).as_bytes()),
-        _ => Err(ResultsError::UnknownEnding {
+    if ends_in(path, "parquet") {
+        publish_table(path, &columns(), grains)
+    } else if ends_in(path, "csv") {
+        publish(path, grains_csv(grains).as_bytes())
+    } else {
+        Err(ResultsError::UnknownEnding {
             path: path.to_owned(),
-        }),
+        })
     }
 }
 
