@@ -1,12 +1,11 @@
 //! From the command line to a scene.
 
-use std::fs;
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
 use kavics::assembly::Grain;
 use kavics::ids::PerGrain;
-use kavics::scene::{Scene, SceneError};
+use kavics::scene::{Scene, SceneError, read_text};
 use kavics_report::ComparedTable;
 use kavics_results::read_grains;
 
@@ -52,12 +51,7 @@ fn with_text<T>(
     read: impl FnOnce(&str, &str, &Path) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let path = &arguments.scene;
-    let text = fs::read_to_string(path).map_err(|source| {
-        Failure::Scene(SceneError::Unreadable {
-            path: path.clone(),
-            source,
-        })
-    })?;
+    let text = read_text(path).map_err(Failure::Scene)?;
     let Changed { text, origins } = overrides::apply(&text, &arguments.set)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = path.to_string_lossy();
