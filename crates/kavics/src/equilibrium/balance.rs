@@ -38,17 +38,11 @@ impl System<'_> {
         moves: bool,
         progress: &mut Progress,
     ) -> Result<Settled, Failure> {
-        let mut iteration = self.settings.iteration;
-        let mut history = History::default();
         if moves {
-            let unbalanced = self.predict(configuration, action);
-            if let Ok(step) =
-                self.solve(configuration, &unbalanced, Iteration::Secant, 0.0, progress)
-            {
-                self.advance(configuration, &step);
-            }
+            self.start_moving(configuration, action, progress);
         }
         let start = configuration.displacements.clone();
+        let (mut iteration, mut history) = (self.settings.iteration, History::default());
         loop {
             self.respond(configuration);
             let imbalance = self.imbalance(configuration, &action.loads);
@@ -61,24 +55,20 @@ impl System<'_> {
                 return Ok(Settled::Balanced);
             }
             let falls = history.push(imbalance.largest);
-            let hopeless = history.len() > MOST_ITERATIONS
-                || !imbalance.largest.is_finite()
-                || iteration == Iteration::Tangent && history.is_hopeless();
             let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > STUCK;
-            if hopeless || floppy {
-                let failure = not_converged(progress, &imbalance);
+            let failure = not_converged(progress, &imbalance);
+            if floppy || history.is_over(iteration) {
                 configuration.displacements = start;
-                if hopeless && !self.any_phases(configuration) {
-                    return Err(self.mechanism_or(failure, configuration, action, progress));
-                }
                 let iteration = if floppy { Iteration::Secant } else { iteration };
-                return self.drift(configuration, action, iteration, progress);
-            }
-            if falls > SLOW && history.len() > 2 {
-                iteration = Iteration::Tangent;
+                return self.give_up(failure, configuration, action, iteration, progress);
             }
             if falls > SLOW {
                 self.factored = None;
+                iteration = if history.len() > 2 {
+                    Iteration::Tangent
+                } else {
+                    iteration
+                };
             }
             let solved = self.solve(
                 configuration,
@@ -87,20 +77,45 @@ impl System<'_> {
                 0.0,
                 progress,
             );
-            let phases = self.any_phases(configuration);
             match solved {
-                Ok(step) if !phases || self.is_small(&step) => self.advance(configuration, &step),
-                Err(_) if !phases => {
-                    let failure = not_converged(progress, &imbalance);
-                    configuration.displacements = start;
-                    return Err(self.mechanism_or(failure, configuration, action, progress));
+                Ok(step) if self.is_small(&step) || !self.any_phases(configuration) => {
+                    self.advance(configuration, &step);
                 }
                 // As good as a mechanism: the set of phases will change before anything moves so far.
                 Ok(_) | Err(_) => {
                     configuration.displacements = start;
-                    return self.drift(configuration, action, iteration, progress);
+                    return self.give_up(failure, configuration, action, iteration, progress);
                 }
             }
+        }
+    }
+
+    /// The first step where freedoms are moved.
+    fn start_moving(
+        &mut self,
+        configuration: &mut Configuration,
+        action: &Action,
+        progress: &mut Progress,
+    ) {
+        let unbalanced = self.predict(configuration, action);
+        if let Ok(step) = self.solve(configuration, &unbalanced, Iteration::Secant, 0.0, progress) {
+            self.advance(configuration, &step);
+        }
+    }
+
+    /// No balance from here: a proximal step where contacts may change phase, else a mechanism or the failure.
+    fn give_up(
+        &mut self,
+        failure: Failure,
+        configuration: &mut Configuration,
+        action: &Action,
+        iteration: Iteration,
+        progress: &mut Progress,
+    ) -> Result<Settled, Failure> {
+        if self.any_phases(configuration) {
+            self.drift(configuration, action, iteration, progress)
+        } else {
+            Err(self.mechanism_or(failure, configuration, action, progress))
         }
     }
 
@@ -304,6 +319,13 @@ impl History {
 
     fn len(&self) -> usize {
         self.largest.len()
+    }
+
+    /// Too long, not a number, or no gain by the tangent.
+    fn is_over(&self, iteration: Iteration) -> bool {
+        self.largest.last().is_some_and(|last| !last.is_finite())
+            || self.len() > MOST_ITERATIONS
+            || iteration == Iteration::Tangent && self.is_hopeless()
     }
 
     /// No better than twelve iterations ago.
