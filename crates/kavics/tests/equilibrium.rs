@@ -283,10 +283,8 @@ fn a_bond_that_holds_all_ends_the_run_at_its_strength() {
     );
 }
 
-/// One contact between two discs, the second moved: friction dissipates 4·μ·N·(Δ − μ·N/k_t) a cycle.
-#[test]
-fn a_cycle_of_shear_dissipates_what_coulomb_says() {
-    let law = Law::Cohesionless(Cohesionless {
+fn grit() -> Law {
+    Law::Cohesionless(Cohesionless {
         stiffness: StiffnessRule::Direct {
             normal: 2.0,
             shear: 1.0,
@@ -296,7 +294,12 @@ fn a_cycle_of_shear_dissipates_what_coulomb_says() {
         reading: Reading::Printed,
         shear_floor: None,
         friction: Some(0.5),
-    });
+    })
+}
+
+/// One contact between two discs, the second moved: friction dissipates 4·μ·N·(Δ − μ·N/k_t) a cycle.
+#[test]
+fn a_cycle_of_shear_dissipates_what_coulomb_says() {
     let assembly = assembly(&[(0.0, 0.0), (2.0, 0.0)], 1.0);
     let all = [Freedom::X, Freedom::Y, Freedom::Rotation];
     let prescribed = |freedom, amplitude, action| Prescribed {
@@ -337,8 +340,13 @@ fn a_cycle_of_shear_dissipates_what_coulomb_says() {
         ],
         ..Program::default()
     };
-    let path =
-        run(&assembly, &program, &properties([law]), Settings::default()).expect("equilibria");
+    let path = run(
+        &assembly,
+        &program,
+        &properties([grit()]),
+        Settings::default(),
+    )
+    .expect("equilibria");
     let cycle = path[4].energy.friction_work - path[2].energy.friction_work;
     let (limit, shear, amplitude) = (0.5 * 0.2, 1.0, 0.3);
     assert_close(cycle, 4.0 * limit * (amplitude - limit / shear), 1e-12);
@@ -392,51 +400,53 @@ fn block() -> (Assembly, Program) {
     (assembly, program)
 }
 
-/// Stress parts times area, xx: shear, variation, fabric, isotropic, total; solved apart to nine digits.
+/// G₀, μ, load step; stress parts times area, xx: shear, variation, fabric, isotropic, total; solved apart to nine
+/// digits.
+const BLOCK: [(f64, f64, usize, [f64; 5]); 3] = [
+    (
+        0.6,
+        0.0,
+        1,
+        [
+            1.667_429_146,
+            2.810_016_797,
+            0.249_574_535,
+            -4.799_258_963,
+            -0.072_238_485,
+        ],
+    ),
+    (
+        0.55,
+        0.75,
+        1,
+        [
+            1.691_959_118,
+            2.786_468_944,
+            0.248_779_492,
+            -4.799_071_887,
+            -0.071_864_333,
+        ],
+    ),
+    (
+        0.55,
+        0.75,
+        2,
+        [
+            2.802_245_499,
+            4.368_981_183,
+            0.395_723_579,
+            -7.675_096_846,
+            -0.108_146_585,
+        ],
+    ),
+];
+
 #[test]
 fn the_block_of_32_discs_reaches_the_reference() {
-    let reference = [
-        (
-            0.6,
-            0.0,
-            1,
-            [
-                1.667_429_146,
-                2.810_016_797,
-                0.249_574_535,
-                -4.799_258_963,
-                -0.072_238_485,
-            ],
-        ),
-        (
-            0.55,
-            0.75,
-            1,
-            [
-                1.691_959_118,
-                2.786_468_944,
-                0.248_779_492,
-                -4.799_071_887,
-                -0.071_864_333,
-            ],
-        ),
-        (
-            0.55,
-            0.75,
-            2,
-            [
-                2.802_245_499,
-                4.368_981_183,
-                0.395_723_579,
-                -7.675_096_846,
-                -0.108_146_585,
-            ],
-        ),
-    ];
     let (mut assembly, program) = block();
     assembly.cell_area = vec![1.0; 32].into();
     let window = Window::new((5..32).map(GrainId).collect(), 32);
-    for (shear, hardening, step, expected) in reference {
+    for (shear, hardening, step, expected) in BLOCK {
         let properties = properties([Law::Cemented(cement(shear, hardening, Reading::Printed))]);
         let path = run(&assembly, &program, &properties, tangent()).expect("equilibria");
         let end: &Equilibrium = &path[step];

@@ -6,7 +6,7 @@ use super::kinematics::ALL_FREEDOMS;
 use super::system::{Imbalance, System};
 use super::{Displacement, Iterate, Iteration, Load};
 use crate::contact_law::{ContactForce, Matrix, RelativeDisplacement};
-use crate::ids::{BodyId, GrainId, Id, PerBody};
+use crate::ids::{BodyId, Id, PerBody};
 
 /// How an iteration with fixed phases ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,28 +229,12 @@ impl System<'_> {
             .map_err(|_| not_converged(progress, &imbalance))?;
         if !self.any_phases(configuration) {
             return Err(Failure::Mechanism {
-                grains: self.moving(&step),
+                grains: self.foremost_grains(|grain| self.motion(&step, grain)),
             });
         }
         self.advance(configuration, &step);
         self.respond(configuration);
         Ok(Settled::Drifting)
-    }
-
-    /// The grains that a step moves most, at most ten.
-    fn moving(&self, step: &[f64]) -> Vec<GrainId> {
-        let grains = self.assembly.grains.len();
-        let mut sizes: Vec<(f64, usize)> = (0..grains)
-            .map(|grain| (self.motion(step, grain), grain))
-            .collect();
-        sizes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let most = sizes.first().map_or(0.0, |s| s.0);
-        sizes
-            .iter()
-            .take(10)
-            .filter(|s| s.0 > 0.1 * most)
-            .map(|s| GrainId::from_index(s.1))
-            .collect()
     }
 
     /// Whether no grain moves farther than the mean radius.

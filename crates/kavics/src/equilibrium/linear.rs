@@ -71,6 +71,8 @@ impl System<'_> {
             let values = self.values(configuration, iteration, proximal, &self.lower);
             if self.factored.as_ref().is_none_or(|(old, _)| *old != values) {
                 let solver = self.symmetric.as_mut().ok_or(Singular)?;
+                // A factorisation that fails leaves no factor behind.
+                self.factored = None;
                 let held = solver.factorise(&self.lower, &values)?;
                 self.factored = Some((values, held));
             }
@@ -131,13 +133,14 @@ impl System<'_> {
                 );
             }
         }
+        let spring = proximal * closed_stiffness(configuration);
         for (body, numbers) in self.numbers.iter().enumerate() {
             for number in numbers.iter().flatten() {
                 let diagonal = sparsity.diagonal(*number as usize);
                 if self.set_aside[body] {
                     values[diagonal] = 1.0;
                 } else if proximal > 0.0 {
-                    values[diagonal] += proximal * closed_stiffness(configuration);
+                    values[diagonal] += spring;
                 }
             }
         }

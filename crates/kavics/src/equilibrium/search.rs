@@ -11,7 +11,7 @@ use super::balance::Settled;
 use super::configuration::{Action, Configuration, Failure, Progress};
 use super::system::System;
 use crate::contact_law::{Phase, PhaseChange};
-use crate::ids::{ContactId, GrainId, Id};
+use crate::ids::{BodyId, ContactId, Id};
 
 /// Violations this near to each other change together.
 const PHASE_TIES: f64 = 1e-6;
@@ -47,12 +47,8 @@ impl System<'_> {
             let settled = self.settle(configuration, action, moves, progress)?;
             moves = false;
             let groups = self.violations(configuration);
-            if groups.is_empty() {
-                match settled {
-                    Settled::Balanced => return Ok(()),
-                    Settled::Drifting if drifts < MOST_DRIFTS => {}
-                    Settled::Drifting => return Err(self.mechanism(configuration, action)),
-                }
+            if settled == Settled::Balanced && groups.is_empty() {
+                return Ok(());
             }
             drifts = if settled == Settled::Drifting {
                 drifts + 1
@@ -119,29 +115,16 @@ impl System<'_> {
         groups
     }
 
-    fn mechanism(&mut self, configuration: &Configuration, action: &Action) -> Failure {
-        let imbalance = self.imbalance(configuration, &action.loads);
-        let mut sizes: Vec<(f64, u32)> = self
-            .assembly
-            .grains
-            .ids()
-            .map(|grain| {
-                let load = imbalance.unbalanced.values()[grain.index()];
-                (
-                    load.largest_force(self.assembly.grains[grain].radius),
-                    grain.0,
-                )
-            })
-            .collect();
-        sizes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let most = sizes.first().map_or(0.0, |s| s.0);
-        let grains = sizes
-            .iter()
-            .take(10)
-            .filter(|s| s.0 > 0.1 * most)
-            .map(|s| GrainId(s.1))
-            .collect();
-        Failure::Mechanism { grains }
+    /// Named by the grains that are least in balance.
+    fn mechanism(&self, configuration: &Configuration, action: &Action) -> Failure {
+        let unbalanced = self.imbalance(configuration, &action.loads).unbalanced;
+        let size = |grain: usize| {
+            let body = BodyId::from_index(grain);
+            unbalanced[body].largest_force(self.moment_arm(body))
+        };
+        Failure::Mechanism {
+            grains: self.foremost_grains(size),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use super::sparsity::{Numbers, Sparsity, Stored};
 use super::{Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
-use crate::ids::{BodyId, Id, PerBody, PerContact, PerGrain, PerProperty};
+use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
 
 /// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
 pub struct System<'a> {
@@ -156,6 +156,17 @@ impl<'a> System<'a> {
         grains
             .map(|grain| self.set_aside[grain] && !self.anchored[grain])
             .collect()
+    }
+
+    /// The grains with the largest sizes: at most ten, none below a tenth of the largest.
+    pub(super) fn foremost_grains(&self, size: impl Fn(usize) -> f64) -> Vec<GrainId> {
+        let mut sizes: Vec<(f64, usize)> = (0..self.assembly.grains.len())
+            .map(|grain| (size(grain), grain))
+            .collect();
+        sizes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let most = sizes.first().map_or(0.0, |s| s.0);
+        let foremost = sizes.iter().take(10).filter(|s| s.0 > 0.1 * most);
+        foremost.map(|s| GrainId::from_index(s.1)).collect()
     }
 
     /// Relative displacement and force of every contact at the present displacements.

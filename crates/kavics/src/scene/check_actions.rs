@@ -84,27 +84,7 @@ fn affine(
     strain: &Placed<StrainFile>,
     checker: &mut Checker,
 ) -> Option<MotionPlan> {
-    if let Some(side) = &file.side {
-        checker.push(Problem::at(
-            &side.span,
-            "a side cannot follow a strain",
-            "expected `grains` beside `strain`",
-        ));
-        return None;
-    }
-    for (number, key) in [(&file.x, "x"), (&file.y, "y")] {
-        if let Some(number) = number {
-            checker.push(
-                Problem::at(
-                    &number.span,
-                    format!("move `{}` has both `{key}` and `strain`", file.name.value),
-                    "expected only one of them",
-                )
-                .and(&strain.span, "the strain"),
-            );
-            return None;
-        }
-    }
+    strain_alone(file, strain, checker)?;
     let free_rotation = match &file.rotation {
         None => false,
         Some(number) if matches!(&number.value, Quantity::Text(text) if text == "free") => true,
@@ -143,6 +123,32 @@ fn affine(
         free_rotation,
         span: strain.span.clone(),
     })
+}
+
+/// A strain stands beside neither a side nor single displacements.
+fn strain_alone(file: &MoveFile, strain: &Placed<StrainFile>, checker: &mut Checker) -> Option<()> {
+    if let Some(side) = &file.side {
+        checker.push(Problem::at(
+            &side.span,
+            "a side cannot follow a strain",
+            "expected `grains` beside `strain`",
+        ));
+        return None;
+    }
+    for (number, key) in [(&file.x, "x"), (&file.y, "y")] {
+        if let Some(number) = number {
+            checker.push(
+                Problem::at(
+                    &number.span,
+                    format!("move `{}` has both `{key}` and `strain`", file.name.value),
+                    "expected only one of them",
+                )
+                .and(&strain.span, "the strain"),
+            );
+            return None;
+        }
+    }
+    Some(())
 }
 
 /// A load.
