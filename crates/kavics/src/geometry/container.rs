@@ -48,6 +48,42 @@ impl Container {
         }
     }
 
+    /// The convex polygon with these corners, counter-clockwise; side k runs from corner k to the next.
+    ///
+    /// Three corners at least, none on the line through its neighbours: the scene checks it.
+    pub fn polygon(corners: &[Vector]) -> Self {
+        let next = corners.iter().cycle().skip(1);
+        let side = |(&start, &end): (&Vector, &Vector)| HalfPlane {
+            point: start,
+            outward: -(end - start).quarter_turn() * (1.0 / (end - start).length()),
+        };
+        Self::new(&corners.iter().zip(next).map(side).collect::<Vec<_>>())
+    }
+
+    /// The sides as they were given.
+    pub fn sides(&self) -> &[HalfPlane] {
+        &self.sides
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn corners(&self) -> &[Vector] {
+        &self.corners
+    }
+
+    /// Area, `[length²]`.
+    pub fn area(&self) -> f64 {
+        let (origin, next) = (self.corners[0], self.corners.iter().cycle().skip(1));
+        let pairs = self.corners.iter().zip(next);
+        let twice: f64 = pairs.map(|(&a, &b)| (a - origin).cross(b - origin)).sum();
+        0.5 * twice
+    }
+
+    /// Distance of a point from the nearest side, positive inside, `[length]`.
+    pub fn depth(&self, point: Vector) -> f64 {
+        let distances = self.sides.iter().map(|side| side.distance(point));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
     /// Largest extent along an axis, `[length]`.
     pub fn size(&self) -> f64 {
         let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
@@ -88,6 +124,16 @@ fn meeting(a: HalfPlane, b: HalfPlane) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_triangle_has_half_the_area_of_its_square() {
+        let corners = [(1.0, 1.0), (3.0, 1.0), (1.0, 3.0)].map(|(x, y)| Vector::new(x, y));
+        let triangle = Container::polygon(&corners);
+        assert_eq!(triangle.area(), 2.0);
+        assert_eq!(triangle.sides()[0].outward, Vector::new(0.0, -1.0));
+        assert_eq!(triangle.depth(Vector::new(1.25, 2.0)), 0.25);
+        assert_eq!(triangle.depth(Vector::new(0.0, 2.0)), -1.0);
+    }
 
     #[test]
     fn a_box_is_put_in_order() {
