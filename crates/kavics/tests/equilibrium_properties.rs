@@ -5,7 +5,7 @@ use kavics::contact_law::{Cemented, Law, Property, Reading, StiffnessRule, Stren
 use kavics::equilibrium::{Displacement, Equilibrium, Freedom, Iteration, Load, Settings};
 use kavics::ids::{BodyId, GrainId, Id, PerProperty, PerSide, PropertyId};
 use kavics::loading::{Action, AppliedLoad, Breakage, Held, LoadPath, Program, Stage};
-use kavics::packing::dropped;
+use kavics::packing::{Bed, dropped};
 use proptest::prelude::*;
 
 const GRAINS: usize = 40;
@@ -15,7 +15,7 @@ fn pack(seed: u64) -> Assembly {
     let radii: Vec<f64> = (0..GRAINS)
         .map(|k| 0.5 + (k * 7 % GRAINS) as f64 / GRAINS as f64)
         .collect();
-    let grains = dropped::drop(12.0, &radii, 1, None, seed)
+    let grains = dropped::drop(&Bed::empty_box(12.0), &radii, 1, seed)
         .expect("a pack")
         .grains;
     let top = grains

@@ -5,7 +5,7 @@ use kavics::geometry::Vector;
 use kavics::ids::{GrainId, Id, PerGrain};
 use kavics::packing::dropped::{drop, fill};
 use kavics::packing::statistics::{packing_fraction, sieve_curve};
-use kavics::packing::{Dropped, Mass, PackingError, SieveCurve, Sizes, Support, rows};
+use kavics::packing::{Bed, Dropped, Mass, PackingError, SieveCurve, Sizes, Source, Support, rows};
 use proptest::prelude::*;
 
 const SEED: u64 = 1;
@@ -24,7 +24,25 @@ fn graded(mass: Mass) -> SieveCurve {
 
 fn pack(sizes: &Sizes, count: usize, width: f64, seed: u64) -> Dropped {
     let radii = sizes.radii(count, seed).unwrap();
-    drop(width, &radii, 1, None, seed).unwrap()
+    drop(&Bed::empty_box(width), &radii, 1, seed).unwrap()
+}
+
+/// An empty box of a width that ends at a height.
+fn below(top: f64, width: f64) -> Bed<'static> {
+    let top = Some(top);
+    Bed {
+        top,
+        ..Bed::empty_box(width)
+    }
+}
+
+fn join<T: Copy>(first: &PerGrain<T>, second: &PerGrain<T>) -> PerGrain<T> {
+    first
+        .values()
+        .iter()
+        .chain(second.values())
+        .copied()
+        .collect()
 }
 
 fn gap(one: &Grain, other: &Grain) -> f64 {
@@ -202,8 +220,8 @@ fn the_packing_fraction_is_that_of_other_programs() {
 #[test]
 fn the_lowest_of_ten_drops_packs_denser() {
     let radii = uniform(0.5, 1.5).radii(5000, SEED).unwrap();
-    let once = drop(120.0, &radii, 1, None, SEED).unwrap();
-    let lowest = drop(120.0, &radii, 10, None, SEED).unwrap();
+    let once = drop(&Bed::empty_box(120.0), &radii, 1, SEED).unwrap();
+    let lowest = drop(&Bed::empty_box(120.0), &radii, 10, SEED).unwrap();
     assert_stable(&lowest, 120.0);
     let gain = interior_fraction(&lowest, 120.0, 6.0) - interior_fraction(&once, 120.0, 6.0);
     assert!((0.01..0.03).contains(&gain), "{gain}");
@@ -225,7 +243,7 @@ fn the_placed_grains_keep_the_sieve_curve() {
 fn a_full_box_holds_no_grain_more_and_keeps_the_sieve_curve() {
     let curve = graded(Mass::Disc);
     let sizes = Sizes::Sieve(curve.clone());
-    let dropped = fill(40.0, 30.0, &sizes, 1, SEED).unwrap();
+    let dropped = fill(&below(30.0, 40.0), &sizes, 1, SEED).unwrap();
     let count = dropped.grains.len();
     let top = |d: &Dropped| {
         d.grains
@@ -274,24 +292,27 @@ fn the_bits_are_the_same_on_every_platform() {
 fn what_cannot_be_dropped_says_why() {
     let says = |result: Result<Dropped, PackingError>| result.unwrap_err().to_string();
     assert_eq!(
-        says(drop(3.0, &[1.0, 2.0], 1, None, SEED)),
+        says(drop(&Bed::empty_box(3.0), &[1.0, 2.0], 1, SEED)),
         "a grain of diameter 4 does not fit into a box of width 3"
     );
     assert_eq!(
-        says(drop(9.0, &[2.0], 1, Some(3.0), SEED)),
+        says(drop(&below(3.0, 9.0), &[2.0], 1, SEED)),
         "a grain of diameter 4 does not fit into a box of height 3"
     );
     assert_eq!(
-        says(drop(9.0, &[1.0, f64::NAN], 1, None, SEED)),
+        says(drop(&Bed::empty_box(9.0), &[1.0, f64::NAN], 1, SEED)),
         "radius NaN is not a positive number"
     );
-    assert_eq!(says(drop(9.0, &[], 1, None, SEED)), "no grains to place");
     assert_eq!(
-        says(drop(9.0, &[1.0], 0, None, SEED)),
+        says(drop(&Bed::empty_box(9.0), &[], 1, SEED)),
+        "no grains to place"
+    );
+    assert_eq!(
+        says(drop(&Bed::empty_box(9.0), &[1.0], 0, SEED)),
         "a grain needs at least one try"
     );
     assert_eq!(
-        says(fill(9.0, 3.0, &uniform(1.0, 2.0), 1, SEED)),
+        says(fill(&below(3.0, 9.0), &uniform(1.0, 2.0), 1, SEED)),
         "a grain of diameter 3.5 does not fit into a box of height 3"
     );
 }
@@ -299,7 +320,7 @@ fn what_cannot_be_dropped_says_why() {
 #[test]
 fn ids_count_the_grains_in_the_order_of_dropping() {
     let radii = uniform(0.5, 1.5).radii(50, SEED).unwrap();
-    let dropped = drop(20.0, &radii, 1, None, SEED).unwrap();
+    let dropped = drop(&Bed::empty_box(20.0), &radii, 1, SEED).unwrap();
     for (id, grain) in dropped.grains.iter() {
         assert_eq!(grain.radius, radii[id.index()]);
     }
@@ -316,7 +337,7 @@ proptest! {
     ) {
         let width = 2.0 * room;
         let radii = uniform(smallest, 1.0).radii(count, seed).unwrap();
-        let dropped = drop(width, &radii, tries, None, seed).unwrap();
+        let dropped = drop(&Bed::empty_box(width), &radii, tries, seed).unwrap();
         prop_assert_eq!(dropped.grains.len(), count);
         assert_in_the_box(&dropped, width);
         assert_no_overlap(&dropped);
@@ -330,10 +351,30 @@ proptest! {
         fraction in prop::sample::select(vec![0.0, 0.25, 0.5, 0.7]),
     ) {
         let width = 2.0 * (f64::from(diameters) + fraction);
-        let dropped = drop(width, &[1.0; 200], 1, None, seed).unwrap();
+        let dropped = drop(&Bed::empty_box(width), &[1.0; 200], 1, seed).unwrap();
         assert_in_the_box(&dropped, width);
         assert_no_overlap(&dropped);
         assert_stable(&dropped, width);
+    }
+
+    #[test]
+    fn grains_dropped_onto_a_bed_rest_on_it(
+        seed in any::<u64>(),
+        first in 1_usize..100,
+        second in 1_usize..100,
+        width in 4.0..30.0_f64,
+    ) {
+        let mut pack = pack(&uniform(0.7, 1.0), first, width, seed);
+        let sizes = uniform(0.2, 2.0);
+        let bed = Bed { resting: pack.grains.values(), layer: 1, ..Bed::empty_box(width) };
+        let radii = sizes.radii(second, Source { seed, layer: 1 }).unwrap();
+        let onto = drop(&bed, &radii, 1, seed).unwrap();
+        prop_assert_eq!(onto.grains.len(), second);
+        pack.grains = join(&pack.grains, &onto.grains);
+        pack.supports = join(&pack.supports, &onto.supports);
+        assert_in_the_box(&pack, width);
+        assert_no_overlap(&pack);
+        assert_stable(&pack, width);
     }
 
     #[test]
@@ -342,8 +383,8 @@ proptest! {
         height in 2.0..30.0_f64,
     ) {
         let radii = uniform(0.5, 1.0).radii(200, seed).unwrap();
-        let whole = drop(12.0, &radii, 1, None, seed).unwrap();
-        let stopped = drop(12.0, &radii, 1, Some(height), seed).unwrap();
+        let whole = drop(&Bed::empty_box(12.0), &radii, 1, seed).unwrap();
+        let stopped = drop(&below(height, 12.0), &radii, 1, seed).unwrap();
         let count = stopped.grains.len();
         let tops = whole.grains.values().iter().map(|g| g.centre.y + g.radius);
         prop_assert_eq!(tops.take_while(|&top| top <= height).count(), count);

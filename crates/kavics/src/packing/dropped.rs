@@ -14,16 +14,53 @@
 //! model of Meakin & Jullien (1987): rolling on until a local minimum is reached.
 
 use crate::assembly::Grain;
-use crate::geometry::Vector;
+use crate::geometry::{Container, Vector};
 use crate::ids::{GrainId, PerGrain};
-use crate::packing::random::{Purpose, Stream, stream};
+use crate::packing::random::{Purpose, Source, Stream, stream};
 use crate::packing::skyline::Skyline;
 use crate::packing::{PackingError, Sizes, check_box, check_count, check_radius};
+
+/// What grains are dropped into.
+#[derive(Clone, Debug)]
+pub struct Bed<'a> {
+    /// The container.
+    pub shape: Shape,
+    /// Grains that lie in it already, apart from each other. They carry the new ones but do not move.
+    pub resting: &'a [Grain],
+    /// Dropping ends before the first grain whose top would be above this height, `[length]`.
+    pub top: Option<f64>,
+    /// Number of the layer, from 0: each has random numbers of its own.
+    pub layer: u32,
+}
+
+/// A container for dropped grains.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// From x = 0 to `width`, with the floor y = 0.
+    Box {
+        /// Width, `[length]`.
+        width: f64,
+    },
+    /// A convex polygon.
+    Polygon(Container),
+}
+
+impl Bed<'_> {
+    /// An empty box of a `width`, open above.
+    pub fn empty_box(width: f64) -> Self {
+        Self {
+            shape: Shape::Box { width },
+            resting: &[],
+            top: None,
+            layer: 0,
+        }
+    }
+}
 
 /// What a grain rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
-    /// A grain that was dropped before.
+    /// A grain of the bed or one that was dropped before: the grains of the bed come first, in their order.
     Grain(GrainId),
     /// The left side of the box.
     Left,
@@ -42,7 +79,7 @@ pub struct Supports {
     pub second: Option<Support>,
 }
 
-/// A dropped pack.
+/// The grains dropped, without those that were in the bed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dropped {
     /// The grains in the order of dropping.
@@ -56,28 +93,25 @@ const TIE: f64 = 1e-9;
 /// Falls and rolls of one grain; a grain needs about three.
 const MOST_MOVES: usize = 100_000;
 
-/// Drops grains of the given `radii`, in their order, into a box from x = 0 to `width` with the floor y = 0.
+/// Drops grains of the given `radii`, in their order, into a bed.
 ///
-/// Each is dropped `tries` times at random abscissas and stays at the lowest place found. With `until_full`, the
-/// dropping ends before the first grain whose top would be above that height.
+/// Each is dropped `tries` times at random abscissas and stays at the lowest place found. Where the bed has a top, the
+/// dropping ends before the first grain that would be above it.
 ///
 /// # Errors
-/// No grains, radii or a width that are not positive, grains wider than the box, none that fits below the height.
+/// No grains, radii or a width that are not positive, grains wider than the box, none that fits below the top.
 pub fn drop(
-    width: f64,
+    bed: &Bed<'_>,
     radii: &[f64],
     tries: usize,
-    until_full: Option<f64>,
     seed: u64,
 ) -> Result<Dropped, PackingError> {
-    let (smallest, largest) = check(width, radii, tries)?;
-    let height = until_full.unwrap_or(f64::INFINITY);
-    let mut pack = Pack {
-        width,
-        skyline: Skyline::new(width, smallest, largest, radii.len()),
-        positions: stream(seed, Purpose::Positions),
-        coins: stream(seed, Purpose::Coins),
+    let &Shape::Box { width } = &bed.shape else {
+        return Err(PackingError::PolygonDropped);
     };
+    check(width, radii, tries)?;
+    let top = bed.top.unwrap_or(f64::INFINITY);
+    let mut pack = Pack::new(bed, width, radii, seed);
     let mut grains = Vec::with_capacity(radii.len());
     let mut supports = Vec::with_capacity(radii.len());
     for (number, &radius) in radii.iter().enumerate() {
@@ -87,7 +121,7 @@ pub fn drop(
                 grain: number,
                 moves: MOST_MOVES,
             })?;
-        if grain.centre.y + radius > height {
+        if grain.centre.y + radius > top {
             break;
         }
         pack.skyline.push(grain);
@@ -96,7 +130,10 @@ pub fn drop(
     }
     if grains.is_empty() {
         let diameter = 2.0 * radii[0];
-        return Err(PackingError::BoxTooLow { diameter, height });
+        return Err(PackingError::BoxTooLow {
+            diameter,
+            height: top,
+        });
     }
     Ok(Dropped {
         grains: grains.into(),
@@ -104,29 +141,33 @@ pub fn drop(
     })
 }
 
-/// Fills a box of `width` and `height` with dropped grains of the given sizes.
+/// Fills a bed up to its top with dropped grains of the given sizes.
 ///
-/// The number n of grains is such that n grains, graded as wanted to the last, fit below `height`, and n + 1 do not;
+/// The number n of grains is such that n grains, graded as wanted to the last, fit below the top, and n + 1 do not;
 /// it is found by halving, so that the realised sieve curve keeps the bound of [`Sizes::radii`].
 ///
 /// # Errors
-/// As [`drop`], and those of the sizes.
+/// As [`drop`], and those of the sizes; a bed without a top.
 pub fn fill(
-    width: f64,
-    height: f64,
+    bed: &Bed<'_>,
     sizes: &Sizes,
     tries: usize,
     seed: u64,
 ) -> Result<Dropped, PackingError> {
+    let height = bed.top.unwrap_or(f64::INFINITY);
     check_box(height)?;
+    let source = Source {
+        seed,
+        layer: bed.layer,
+    };
     let attempt = |count: usize| -> Result<Option<Dropped>, PackingError> {
-        let radii = sizes.radii(count, seed)?;
+        let radii = sizes.radii(count, source)?;
         let largest = radii.iter().fold(0.0_f64, |a, &b| a.max(b));
         if 2.0 * largest > height {
             let diameter = 2.0 * largest;
             return Err(PackingError::BoxTooLow { diameter, height });
         }
-        let dropped = drop(width, &radii, tries, Some(height), seed)?;
+        let dropped = drop(bed, &radii, tries, seed)?;
         Ok((dropped.grains.len() == count).then_some(dropped))
     };
     let mut full = Dropped::default();
@@ -147,24 +188,19 @@ pub fn fill(
     Ok(full)
 }
 
-/// The smallest and the largest radius, if all can be dropped.
-fn check(width: f64, radii: &[f64], tries: usize) -> Result<(f64, f64), PackingError> {
+/// Whether all radii can be dropped.
+fn check(width: f64, radii: &[f64], tries: usize) -> Result<(), PackingError> {
     check_count(radii.len())?;
     check_box(width)?;
     if tries == 0 {
         return Err(PackingError::NoTries);
     }
-    let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
-    for &radius in radii {
-        check_radius(radius)?;
-        smallest = smallest.min(radius);
-        largest = largest.max(radius);
-    }
-    let diameter = 2.0 * largest;
+    radii.iter().try_for_each(|&radius| check_radius(radius))?;
+    let diameter = 2.0 * radii.iter().fold(0.0_f64, |a, &b| a.max(b));
     if diameter > width {
         return Err(PackingError::BoxTooNarrow { diameter, width });
     }
-    Ok((smallest, largest))
+    Ok(())
 }
 
 struct Pack {
@@ -212,6 +248,33 @@ struct Roll {
 }
 
 impl Pack {
+    /// The grains of the bed, before the first drop.
+    fn new(bed: &Bed<'_>, width: f64, radii: &[f64], seed: u64) -> Self {
+        let source = Source {
+            seed,
+            layer: bed.layer,
+        };
+        let all = || {
+            radii
+                .iter()
+                .copied()
+                .chain(bed.resting.iter().map(|g| g.radius))
+        };
+        let (smallest, largest) = all().fold((f64::INFINITY, 0.0_f64), |(low, high), radius| {
+            (low.min(radius), high.max(radius))
+        });
+        let mut skyline = Skyline::new(width, smallest, largest, all().count());
+        for &grain in bed.resting {
+            skyline.push(grain);
+        }
+        Self {
+            width,
+            skyline,
+            positions: stream(source, Purpose::Positions),
+            coins: stream(source, Purpose::Coins),
+        }
+    }
+
     fn lowest_place(&mut self, radius: f64, tries: usize) -> Option<(Grain, Supports)> {
         let mut lowest: Option<(Grain, Supports)> = None;
         for _ in 0..tries {

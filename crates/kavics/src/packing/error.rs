@@ -50,6 +50,9 @@ pub enum PackingError {
         /// Height of the box, `[length]`.
         height: f64,
     },
+    /// Grains are to be dropped into a polygon.
+    #[error("grains cannot be dropped into a polygon")]
+    PolygonDropped,
     /// A grain is to be placed at the lowest of zero places.
     #[error("a grain needs at least one try")]
     NoTries,

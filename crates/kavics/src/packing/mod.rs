@@ -11,9 +11,9 @@ pub mod sieve;
 mod skyline;
 pub mod statistics;
 
-pub use dropped::{Dropped, Support, Supports};
+pub use dropped::{Bed, Dropped, Shape, Support, Supports};
 pub use error::PackingError;
-pub use random::{Purpose, Stream};
+pub use random::{Purpose, Source, Stream};
 pub use sieve::{Mass, SieveCurve, Sizes};
 
 /// Most grains that are placed: ids and memory end somewhere above.

@@ -28,8 +28,27 @@ pub struct Stream {
     generator: Pcg64,
 }
 
-/// The stream of a seed for a purpose: the seed gives the state, the purpose the increment.
-pub fn stream(seed: u64, purpose: Purpose) -> Stream {
+/// Where random numbers come from: the seed of the scene and the layer of grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Seed of the scene.
+    pub seed: u64,
+    /// Number of the layer, from 0.
+    pub layer: u32,
+}
+
+impl From<u64> for Source {
+    /// The first layer, or what has no layers.
+    fn from(seed: u64) -> Self {
+        Self { seed, layer: 0 }
+    }
+}
+
+/// Streams kept for each layer.
+const STREAMS_OF_A_LAYER: u64 = 64;
+
+/// The stream of a source for a purpose: the seed gives the state, purpose and layer the increment.
+pub fn stream(source: impl Into<Source>, purpose: Purpose) -> Stream {
     let number = match purpose {
         Purpose::Radii => 0,
         Purpose::Order => 1,
@@ -38,8 +57,10 @@ pub fn stream(seed: u64, purpose: Purpose) -> Stream {
         Purpose::Strengths => 4,
         Purpose::Zones => 5,
     };
+    let Source { seed, layer } = source.into();
+    let increment = number + STREAMS_OF_A_LAYER * u64::from(layer);
     Stream {
-        generator: Pcg64::new(spread(seed), spread(number)),
+        generator: Pcg64::new(spread(seed), spread(increment)),
     }
 }
 
@@ -97,6 +118,14 @@ mod tests {
         assert_eq!(draws(7, Purpose::Zones), draws(7, Purpose::Zones));
         assert_ne!(draws(7, Purpose::Zones), draws(7, Purpose::Coins));
         assert_ne!(draws(7, Purpose::Zones), draws(8, Purpose::Zones));
+    }
+
+    #[test]
+    fn every_layer_has_numbers_of_its_own() {
+        let first = |layer| stream(Source { seed: 7, layer }, Purpose::Order).unit();
+        assert_eq!(first(0), stream(7, Purpose::Order).unit());
+        assert_ne!(first(0), first(1));
+        assert_ne!(first(1), first(2));
     }
 
     #[test]

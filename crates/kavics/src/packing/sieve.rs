@@ -9,7 +9,7 @@
 //! d(u)^{-p} = a^{-p} - u\,(a^{-p} - b^{-p}), \qquad \bar m = \frac{p \ln(b/a)}{a^{-p} - b^{-p}}
 //! ```
 
-use crate::packing::random::{Purpose, stream};
+use crate::packing::random::{Purpose, Source, stream};
 use crate::packing::{PackingError, check_count, check_radius};
 
 /// How the mass of a grain grows with its diameter.
@@ -72,7 +72,7 @@ pub enum Sizes {
 }
 
 impl Sizes {
-    /// `count` radii in random order.
+    /// `count` radii in random order; the source is a seed, or a seed and a layer.
     ///
     /// Uniform radii are the middles of `count` equal parts of the range. After a sieve curve, each class from the
     /// coarsest on gets as many grains as fit best what it and the coarser ones should weigh; then their diameters are
@@ -84,7 +84,7 @@ impl Sizes {
     ///
     /// # Errors
     /// No grains, a range or a curve that is none.
-    pub fn radii(&self, count: usize, seed: u64) -> Result<Vec<f64>, PackingError> {
+    pub fn radii(&self, count: usize, source: impl Into<Source>) -> Result<Vec<f64>, PackingError> {
         check_count(count)?;
         let mut radii = match self {
             &Self::Uniform { from, to } => uniform(from, to, count)?,
@@ -93,7 +93,7 @@ impl Sizes {
                 curve.radii(count)
             }
         };
-        stream(seed, Purpose::Order).shuffle(&mut radii);
+        stream(source, Purpose::Order).shuffle(&mut radii);
         Ok(radii)
     }
 }

@@ -12,7 +12,7 @@ use super::value::Placed;
 use crate::assembly::{self, Grain, Side};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerGrain, PerSide};
-use crate::packing::{self, Mass, PackingError, SieveCurve, Sizes};
+use crate::packing::{self, Bed, Mass, PackingError, SieveCurve, Sizes};
 
 /// Grains in their box.
 #[derive(Clone, Debug)]
@@ -107,15 +107,13 @@ fn dropped(
             mass: if *sphere { Mass::Sphere } else { Mass::Disc },
         }),
     };
-    let pack = match (dropped.count, plan.height) {
-        (Some(count), _) => {
-            let radii = sizes.radii(count, seed)?;
-            packing::dropped::drop(plan.width, &radii, dropped.tries, None, seed)?
-        }
-        (None, height) => {
-            let height = height.unwrap_or_default();
-            packing::dropped::fill(plan.width, height, &sizes, dropped.tries, seed)?
-        }
+    let mut bed = Bed::empty_box(plan.width);
+    let pack = if let Some(count) = dropped.count {
+        let radii = sizes.radii(count, seed)?;
+        packing::dropped::drop(&bed, &radii, dropped.tries, seed)?
+    } else {
+        bed.top = plan.height;
+        packing::dropped::fill(&bed, &sizes, dropped.tries, seed)?
     };
     Ok(pack.grains)
 }
