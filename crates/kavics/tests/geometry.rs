@@ -6,7 +6,7 @@ use kavics::assembly::{
     Between, ContactGraph, ContactPoint, DualLength, Grain, Partner, Shaping, Side, Site,
     box_sides, contact_graph, envelope,
 };
-use kavics::geometry::{Container, Grid, HalfPlane, PowerDiagram, Vector, power_diagram};
+use kavics::geometry::{Container, Edges, Grid, HalfPlane, PowerDiagram, Vector, power_diagram};
 use kavics::ids::{GrainId, PerGrain, PerSide, PropertyId, SideId};
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ impl Pack {
         };
         let container = Container::new(self.sides().map(half_plane).values());
         let near = Grid::new(&self.centres, &self.radii).near_pairs(1e-9);
-        power_diagram(&self.centres, &self.radii, &container, &near)
+        power_diagram(&self.centres, &self.radii, &container, &near, Edges::All)
     }
 
     fn grains(&self) -> PerGrain<Grain> {

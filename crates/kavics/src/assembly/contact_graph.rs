@@ -2,7 +2,8 @@
 
 use crate::assembly::{Contact, Grain, Partner, Side};
 use crate::geometry::{
-    Container, DualEdge, Grid, HalfPlane, NearPair, PowerDiagram, SideEdge, Vector, power_diagram,
+    Container, DualEdge, Edges, Grid, HalfPlane, NearPair, PowerDiagram, SideEdge, Vector,
+    power_diagram,
 };
 use crate::ids::{GrainId, Id, PerGrain, PerSide, PropertyId, SideId};
 
@@ -106,7 +107,11 @@ pub fn contact_graph(
         outward: side.outward,
     });
     let container = Container::new(&planes.collect::<Vec<_>>());
-    let diagram = power_diagram(&centres, &radii, &container, &near);
+    let edges = match between {
+        Between::Touching => Edges::OfNearPairs,
+        Between::Neighbours => Edges::All,
+    };
+    let diagram = power_diagram(&centres, &radii, &container, &near, edges);
     let choice = Choice {
         grains,
         sides,

@@ -49,6 +49,15 @@ impl<'a> Lifted<'a> {
         }
     }
 
+    /// Whether three discs turn counter-clockwise; exact.
+    pub(super) fn turns_left(&self, triangle: [u32; 3]) -> bool {
+        let [p, q, r] = triangle.map(|i| {
+            let x = self.centres[i as usize];
+            [x.x, x.y]
+        });
+        orient_2d(&p, &q, &r) == Sign::Positive
+    }
+
     fn tie(&self, triangle: [u32; 3], other: u32) -> bool {
         let point = |i: u32| {
             let x = self.centres[i as usize];

@@ -1,13 +1,17 @@
 //! Points, segments, discs, near pairs and the power diagram. Knows nothing of grains or contacts.
 
 mod container;
+mod embedding;
+mod faces;
 mod lifted;
 mod near_pairs;
+mod outer_triangles;
 mod power_cell;
 mod power_diagram;
 mod vector;
 
 pub use container::{Container, HalfPlane};
+pub use embedding::{Embedding, HalfEdge};
 pub use near_pairs::{Disc, Grid, NearPair};
-pub use power_diagram::{DualEdge, PowerDiagram, SideEdge, power_diagram};
+pub use power_diagram::{DualEdge, Edges, PowerDiagram, SideEdge, power_diagram};
 pub use vector::Vector;

@@ -123,8 +123,12 @@ impl Grid {
             radius,
             index: index as u32,
         };
-        let discs: Vec<Disc> = centres.iter().zip(radii).enumerate().map(disc).collect();
-        let mut octaves: Vec<u64> = radii.iter().map(|&r| octave(r)).collect();
+        Self::of_discs(centres.iter().zip(radii).enumerate().map(disc).collect())
+    }
+
+    /// The grid of these discs; O(N).
+    pub(super) fn of_discs(discs: Vec<Disc>) -> Self {
+        let mut octaves: Vec<u64> = discs.iter().map(|disc| octave(disc.radius)).collect();
         octaves.sort_unstable();
         octaves.dedup();
         let of_octave = |&o: &u64| -> Vec<Disc> {

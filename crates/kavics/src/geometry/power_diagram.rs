@@ -7,12 +7,29 @@ use rayon::prelude::*;
 
 use crate::geometry::Vector;
 use crate::geometry::container::{Container, HalfPlane};
+use crate::geometry::embedding::Embedding;
+use crate::geometry::faces::{Faces, Triangulation, fingerprint, lowest_first};
 use crate::geometry::lifted::Lifted;
-use crate::geometry::near_pairs::{DISCS_A_TASK, Disc, Grid, NearPair};
+use crate::geometry::near_pairs::{Disc, Grid, NearPair};
+use crate::geometry::outer_triangles::{Gap, outer_triangles};
 use crate::geometry::power_cell::{Cell, Line, SIDES};
+
+/// Discs whose cells one task cuts; fixed, so that the result does not depend on the number of threads.
+const DISCS_A_TASK: usize = 256;
+/// A pair whose gap or overlap is a larger share of the smaller radius is no edge of the graph of near discs.
+const NEAR: f64 = 0.01;
 
 /// Radical centres farther away than this many sizes of the container belong to triangles too flat to matter.
 const OUTSIDE: f64 = 1e6;
+
+/// Which edges of a power diagram are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// Those of the near pairs.
+    OfNearPairs,
+    /// All.
+    All,
+}
 
 /// Common edge of the cells of two discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +59,7 @@ pub struct SideEdge {
 pub struct PowerDiagram {
     /// Area of each cell, `[length²]`.
     pub cell_area: Vec<f64>,
-    /// Edges between cells by (first, second); edges of no length may be among them.
+    /// Edges between cells by (first, second), as wanted; edges of no length may be among them.
     pub edges: Vec<DualEdge>,
     /// Edges on the container by (disc, side).
     pub side_edges: Vec<SideEdge>,
@@ -63,6 +80,7 @@ pub fn power_diagram(
     radii: &[f64],
     container: &Container,
     near: &[NearPair],
+    edges: Edges,
 ) -> PowerDiagram {
     // A power of two as unit of length: exact, and no product can overflow.
     let unit = f64::from_bits(container.size().to_bits() & (0x7ff << 52));
@@ -70,101 +88,265 @@ pub fn power_diagram(
     let scale = 1.0 / unit;
     let centres: Vec<Vector> = centres.iter().map(|&x| x * scale).collect();
     let radii: Vec<f64> = radii.iter().map(|&r| r * scale).collect();
-    let clipping = Clipping::new(&centres, &radii, container.scaled(scale), near);
-    let tasks: Vec<(PowerDiagram, Vec<u32>)> = clipping
-        .grid
-        .discs
-        .par_chunks(DISCS_A_TASK)
-        .map(|discs| clipping.cells(discs))
-        .collect();
-    let mut diagram = PowerDiagram::default();
-    let mut at_boundary = Vec::new();
-    for (task, outer) in tasks {
-        diagram.append(task, unit);
-        at_boundary.extend(outer);
+    let clipping = Clipping::new(&centres, &radii, container.scaled(scale));
+    let (links, unlinked) = links(&radii, near, scale);
+    let graph = Embedding::new(&centres, &links);
+    let triangulation = Triangulation {
+        discs: &clipping.discs,
+        points: &centres,
+        graph: &graph,
+        lifted: &clipping.lifted,
+        container: &clipping.container,
+        margin: 1e-9 * clipping.size,
+        diagonals: edges == Edges::All,
+    };
+    let mut faces = triangulation.faces();
+    for disc in unlinked {
+        faces.cells[disc as usize].open = true;
     }
-    diagram.outer_triangles = clipping.outer_triangles(&at_boundary);
+    let mut cut = clipping.open_cells(&mut faces, &graph);
+    if edges == Edges::OfNearPairs {
+        let key = |pair: &NearPair| (pair.first, pair.second);
+        let is_near = |edge: &DualEdge| {
+            let own = (edge.first, edge.second);
+            near.binary_search_by_key(&own, key).is_ok()
+        };
+        cut.diagram.edges.retain(is_near);
+    }
+    clipping.add_outer_triangles(&mut cut, &graph);
+    let mut diagram = together(faces, cut, &graph, &links);
+    diagram.scale(unit);
     diagram
 }
 
-impl PowerDiagram {
-    fn append(&mut self, task: Self, unit: f64) {
-        let area = |a: f64| a * unit * unit;
-        self.cell_area.extend(task.cell_area.into_iter().map(area));
-        let length = |parts: [f64; 2]| parts.map(|p| p * unit);
-        self.edges.extend(task.edges.into_iter().map(|e| DualEdge {
-            parts: length(e.parts),
-            ..e
-        }));
-        let side_edges = task.side_edges.into_iter().map(|e| SideEdge {
-            parts: length(e.parts),
-            ..e
-        });
-        self.side_edges.extend(side_edges);
-        self.triangles.extend(task.triangles);
+/// The near pairs that touch but for a small share of the smaller radius, and the discs of the others.
+fn links(radii: &[f64], near: &[NearPair], scale: f64) -> (Vec<[u32; 2]>, Vec<u32>) {
+    let (mut links, mut unlinked) = (Vec::with_capacity(near.len()), Vec::new());
+    for pair in near {
+        let smaller = radii[pair.first as usize].min(radii[pair.second as usize]);
+        let discs = [pair.first, pair.second];
+        if pair.gap.abs() * scale <= NEAR * smaller {
+            links.push(discs);
+        } else {
+            unlinked.extend(discs);
+        }
     }
+    (links, unlinked)
+}
+
+/// The diagram of discs of which some were cut out, the others found by their faces.
+fn together(faces: Faces, cut: CutOut, graph: &Embedding, links: &[[u32; 2]]) -> PowerDiagram {
+    let cells = &faces.cells;
+    let of_faces = |disc: u32| !cells[disc as usize].open;
+    let mut diagram = PowerDiagram {
+        cell_area: cells.iter().map(|cell| cell.area).collect(),
+        ..cut.diagram
+    };
+    for (disc, area) in cut.discs.iter().zip(&cut.areas) {
+        diagram.cell_area[*disc as usize] = *area;
+    }
+    // Whoever has the lowest number says what edges and triangles there are.
+    let mut edges = Vec::with_capacity(links.len() + diagram.edges.len());
+    for (k, &[first, second]) in links.iter().enumerate() {
+        if of_faces(first) {
+            let parts = graph.slots(k).map(|slot| faces.heights[slot as usize]);
+            edges.push(DualEdge {
+                first,
+                second,
+                parts: [parts[1], parts[0]],
+            });
+        }
+    }
+    edges.append(&mut diagram.edges);
+    edges.extend(whole_diagonals(faces.diagonals).filter(|edge| of_faces(edge.first)));
+    edges.sort_by_key(|edge| (edge.first, edge.second));
+    diagram.edges = edges;
+    let own = faces.triangles.iter().filter(|t| of_faces(t[0]));
+    diagram.triangles.extend(own);
+    diagram
+}
+
+/// Puts both parts of each diagonal together.
+fn whole_diagonals(mut halves: Vec<DualEdge>) -> impl Iterator<Item = DualEdge> {
+    halves.sort_by_key(|edge| (edge.first, edge.second));
+    let halves: Vec<_> = halves.chunks_exact(2).map(|h| (h[0], h[1])).collect();
+    halves.into_iter().map(|(one, other)| {
+        let parts = [one.parts[0] + other.parts[0], one.parts[1] + other.parts[1]];
+        DualEdge {
+            parts: not_turned_around(parts),
+            ..one
+        }
+    })
+}
+
+/// Rounding may turn an edge of no length around.
+fn not_turned_around([before, after]: [f64; 2]) -> [f64; 2] {
+    if before + after >= 0.0 {
+        return [before, after];
+    }
+    let middle = 0.5 * (after - before);
+    [-middle, middle]
+}
+
+impl PowerDiagram {
+    fn scale(&mut self, unit: f64) {
+        for area in &mut self.cell_area {
+            *area *= unit * unit;
+        }
+        let of_sides = self.side_edges.iter_mut().map(|edge| &mut edge.parts);
+        let parts = self.edges.iter_mut().map(|edge| &mut edge.parts);
+        for part in parts.chain(of_sides).flatten() {
+            *part *= unit;
+        }
+    }
+}
+
+/// Cells that were cut out one by one.
+#[derive(Default)]
+struct CutOut {
+    /// The discs, rising.
+    discs: Vec<u32>,
+    /// Their areas.
+    areas: Vec<f64>,
+    /// Edges, side edges and inner triangles of which they have the lowest number.
+    diagram: PowerDiagram,
+    /// Those whose cells meet the container.
+    at_boundary: Vec<u32>,
+    /// Where triangles are missing around them.
+    gaps: Vec<Gap>,
+}
+
+/// One cell that was cut out.
+#[derive(Default)]
+struct CutCell {
+    disc: u32,
+    area: f64,
+    diagram: PowerDiagram,
+    neighbours: Vec<u32>,
+    fingerprint: u64,
+    gaps: Vec<Gap>,
+    at_boundary: bool,
 }
 
 /// All that the cells are cut from.
 struct Clipping<'a> {
     container: Container,
     size: f64,
+    discs: Vec<Disc>,
     grid: Grid,
     lifted: Lifted<'a>,
-    neighbours: Neighbours,
 }
 
 impl<'a> Clipping<'a> {
-    fn new(centres: &'a [Vector], radii: &[f64], container: Container, near: &[NearPair]) -> Self {
+    fn new(centres: &'a [Vector], radii: &[f64], container: Container) -> Self {
+        let grid = Grid::new(centres, radii);
         Self {
             size: container.size(),
-            grid: Grid::new(centres, radii),
+            discs: grid.discs.clone(),
+            grid,
             lifted: Lifted::new(centres, radii, container.middle()),
-            neighbours: Neighbours::new(centres.len(), near),
             container,
         }
     }
 
-    /// Cells, edges and inner triangles of some discs, and those whose cells meet the container.
-    fn cells(&self, discs: &[Disc]) -> (PowerDiagram, Vec<u32>) {
-        let mut cell = Cell::default();
-        let (mut diagram, mut at_boundary) = (PowerDiagram::default(), Vec::new());
-        for disc in discs {
-            self.cut_out(disc, &mut cell);
-            self.collect_triangles(disc, &cell, true, &mut diagram.triangles);
-            if cell.edges.iter().any(|edge| !edge.line.is_disc()) {
-                at_boundary.push(disc.index);
+    /// Cuts out the cells of the open discs, and of those around them that then turn out to be wrong.
+    fn open_cells(&self, faces: &mut Faces, graph: &Embedding) -> CutOut {
+        let all = 0..self.discs.len() as u32;
+        let mut wanted: Vec<u32> = all.filter(|&i| faces.cells[i as usize].open).collect();
+        let mut cut: Vec<CutCell> = Vec::new();
+        while !wanted.is_empty() {
+            let mut doubted = Vec::new();
+            for cell in self.cells(&wanted, graph) {
+                let of_faces = &mut faces.cells[cell.disc as usize];
+                if of_faces.open || of_faces.fingerprint != cell.fingerprint {
+                    doubted.extend_from_slice(&cell.neighbours);
+                }
+                of_faces.open = true;
+                cut.push(cell);
             }
-            self.clip_by_sides(disc, &mut cell);
-            diagram.cell_area.push(cell.area());
-            collect_edges(disc, &cell, &mut diagram);
+            doubted.sort_unstable();
+            doubted.dedup();
+            wanted = doubted;
+            wanted.retain(|&disc| !faces.cells[disc as usize].open);
         }
-        (diagram, at_boundary)
+        cut.sort_unstable_by_key(|cell| cell.disc);
+        let mut out = CutOut::default();
+        cut.into_iter().for_each(|cell| out.add(cell));
+        out
     }
 
-    /// The triangles with their radical centre outside the container. Cells that meet there reach through the
-    /// container's boundary, each from its own centre, so only those can own or cut one.
-    fn outer_triangles(&self, at_boundary: &[u32]) -> Vec<[u32; 3]> {
+    fn cells(&self, discs: &[u32], graph: &Embedding) -> Vec<CutCell> {
+        let tasks = discs.par_chunks(DISCS_A_TASK).map(|discs| {
+            let mut cell = Cell::default();
+            let cut = |&disc| self.cell(&self.discs[disc as usize], graph, &mut cell);
+            discs.iter().map(cut).collect::<Vec<_>>()
+        });
+        tasks.collect::<Vec<_>>().into_iter().flatten().collect()
+    }
+
+    fn cell(&self, disc: &Disc, graph: &Embedding, cell: &mut Cell) -> CutCell {
+        let mut cut = CutCell {
+            disc: disc.index,
+            ..CutCell::default()
+        };
+        self.start(disc, 1e-6 * self.size, cell);
+        self.cut_out(disc, graph, &self.grid, cell);
+        self.collect_triangles(disc, cell, &mut cut.diagram);
+        cut.gaps = gaps(disc.index, cell);
+        for (a, b, _) in cell.radical_centres() {
+            let own = fingerprint(lowest_first([disc.index, a, b]));
+            cut.fingerprint = cut.fingerprint.wrapping_add(own);
+        }
+        let lines = cell.edges.iter().map(|edge| &edge.line);
+        let neighbours = lines.filter(|line| line.is_disc()).map(|line| line.tag);
+        cut.neighbours = neighbours.collect();
+        cut.at_boundary = cut.neighbours.len() < cell.edges.len();
+        self.clip_by_sides(disc, cell);
+        cut.area = cell.area();
+        collect_edges(disc, cell, &mut cut.diagram);
+        cut
+    }
+
+    /// Adds the triangles with their radical centre beyond the container that no cell within it knows.
+    fn add_outer_triangles(&self, cut: &mut CutOut, graph: &Embedding) {
+        let gaps = std::mem::take(&mut cut.gaps);
+        let all = match outer_triangles(gaps, &self.discs, &self.lifted) {
+            Some(triangles) => triangles
+                .into_iter()
+                .filter(|triangle| triangle.centre.length() < OUTSIDE * self.size)
+                .map(|triangle| lowest_first(triangle.discs))
+                .collect(),
+            None => {
+                cut.diagram.outer_triangles.clear();
+                self.far_triangles(&cut.at_boundary, graph)
+            }
+        };
+        cut.diagram.outer_triangles.extend::<Vec<_>>(all);
+    }
+
+    /// The same, where the gaps do not fit together: from cells that reach far out. Cells that meet there reach
+    /// through the container's boundary, each from its own centre, so only those can own or cut one.
+    fn far_triangles(&self, at_boundary: &[u32], graph: &Embedding) -> Vec<[u32; 3]> {
+        let of_boundary = at_boundary.iter().map(|&k| self.discs[k as usize]);
+        let grid = Grid::of_discs(of_boundary.collect());
         let of_disc = |cell: &mut Cell, &index: &u32| {
-            let disc = &self.grid.discs[index as usize];
+            let disc = &self.discs[index as usize];
             self.start(disc, OUTSIDE * self.size, cell);
-            let near = self.neighbours.of(index).iter().chain(at_boundary);
-            near.for_each(|&other| self.cut(disc, &self.grid.discs[other as usize], cell));
-            let mut triangles = Vec::new();
-            self.collect_triangles(disc, cell, false, &mut triangles);
-            triangles
+            self.cut_out(disc, graph, &grid, cell);
+            let mut found = PowerDiagram::default();
+            self.collect_triangles(disc, cell, &mut found);
+            found.outer_triangles
         };
         let triangles = at_boundary.par_iter().map_init(Cell::default, of_disc);
         triangles.collect::<Vec<_>>().concat()
     }
 
-    /// The cell of a disc in the container grown a little, so that radical centres on its boundary are not lost.
-    fn cut_out(&self, disc: &Disc, cell: &mut Cell) {
-        self.start(disc, 1e-6 * self.size, cell);
-        for &other in self.neighbours.of(disc.index) {
-            self.cut(disc, &self.grid.discs[other as usize], cell);
+    /// Cuts the cell of a disc out of what it was started with, by its neighbours in the graph and all of a grid.
+    fn cut_out(&self, disc: &Disc, graph: &Embedding, grid: &Grid, cell: &mut Cell) {
+        for other in graph.neighbours(disc.index) {
+            self.cut(disc, &self.discs[other as usize], cell);
         }
-        for level in &self.grid.levels {
+        for level in &grid.levels {
             let grown = level.largest_radius * level.largest_radius - disc.radius * disc.radius;
             let mut done = 0.0;
             loop {
@@ -231,24 +413,50 @@ impl<'a> Clipping<'a> {
     }
 
     /// The triangles that a disc owns, with their radical centre in the container or outside it.
-    fn collect_triangles(
-        &self,
-        disc: &Disc,
-        cell: &Cell,
-        within: bool,
-        triangles: &mut Vec<[u32; 3]>,
-    ) {
+    fn collect_triangles(&self, disc: &Disc, cell: &Cell, diagram: &mut PowerDiagram) {
         let tolerance = 1e-9 * self.size;
-        let before = triangles.len();
+        let (inner, outer) = (diagram.triangles.len(), diagram.outer_triangles.len());
         for (a, b, point) in cell.radical_centres() {
             let point = disc.centre + point;
             let inside = |side: &HalfPlane| side.distance(point) >= -tolerance;
-            if disc.index < a.min(b) && self.container.sides.iter().all(inside) == within {
+            let triangles = if self.container.sides.iter().all(inside) {
+                &mut diagram.triangles
+            } else {
+                &mut diagram.outer_triangles
+            };
+            if disc.index < a.min(b) {
                 triangles.push([disc.index, a, b]);
             }
         }
-        triangles[before..].sort_unstable();
+        diagram.triangles[inner..].sort_unstable();
+        diagram.outer_triangles[outer..].sort_unstable();
     }
+}
+
+/// Where the sides cut off triangles around a disc.
+fn gaps(disc: u32, cell: &Cell) -> Vec<Gap> {
+    let lines = || cell.edges.iter().map(|edge| &edge.line);
+    let count = cell.edges.len();
+    let Some(first) = lines().position(Line::is_disc) else {
+        return Vec::new();
+    };
+    let mut gaps = Vec::new();
+    let mut to = cell.edges[first].line.tag;
+    let mut cut_off = false;
+    for line in lines().cycle().skip(first + 1).take(count) {
+        if line.is_disc() {
+            if cut_off {
+                gaps.push(Gap {
+                    from: line.tag,
+                    at: disc,
+                    to,
+                });
+            }
+            to = line.tag;
+        }
+        cut_off = !line.is_disc();
+    }
+    gaps
 }
 
 /// The edges of a clipped cell: with discs of higher numbers, and with sides.
@@ -274,36 +482,19 @@ fn collect_edges(disc: &Disc, cell: &Cell, diagram: &mut PowerDiagram) {
     diagram.side_edges[sides..].sort_unstable_by_key(|e| e.side);
 }
 
-/// The likely neighbours of each disc.
-struct Neighbours {
-    start: Vec<u32>,
-    others: Vec<u32>,
-}
-
-impl Neighbours {
-    fn new(count: usize, near: &[NearPair]) -> Self {
-        let mut start = vec![0_u32; count + 1];
-        for pair in near {
-            start[pair.first as usize + 1] += 1;
-            start[pair.second as usize + 1] += 1;
+impl CutOut {
+    fn add(&mut self, cell: CutCell) {
+        self.discs.push(cell.disc);
+        self.areas.push(cell.area);
+        self.diagram.edges.extend(cell.diagram.edges);
+        self.diagram.side_edges.extend(cell.diagram.side_edges);
+        self.diagram.triangles.extend(cell.diagram.triangles);
+        self.diagram
+            .outer_triangles
+            .extend(cell.diagram.outer_triangles);
+        self.gaps.extend(cell.gaps);
+        if cell.at_boundary {
+            self.at_boundary.push(cell.disc);
         }
-        for i in 0..count {
-            start[i + 1] += start[i];
-        }
-        let mut next = start.clone();
-        let mut others = vec![0; 2 * near.len()];
-        for pair in near {
-            for (one, other) in [(pair.first, pair.second), (pair.second, pair.first)] {
-                let place = &mut next[one as usize];
-                others[*place as usize] = other;
-                *place += 1;
-            }
-        }
-        Self { start, others }
-    }
-
-    fn of(&self, disc: u32) -> &[u32] {
-        let disc = disc as usize;
-        &self.others[self.start[disc] as usize..self.start[disc + 1] as usize]
     }
 }
