@@ -1,9 +1,11 @@
 //! Which bodies meet, and the dual graph: from grains and sides to contact sites, power cells and triangles.
 
+use rayon::prelude::*;
+
 use crate::assembly::{Contact, Grain, Partner, Side};
 use crate::geometry::{
     Container, DualEdge, Edges, Grid, HalfPlane, NearPair, PowerDiagram, SideEdge, Vector,
-    power_diagram,
+    power_diagram_of, spatial_order,
 };
 use crate::ids::{GrainId, Id, PerGrain, PerSide, PropertyId, SideId};
 
@@ -98,47 +100,86 @@ pub fn contact_graph(
     reach: &PerSide<f64>,
     touching_tolerance: f64,
 ) -> ContactGraph {
-    let centres: Vec<Vector> = grains.values().iter().map(|g| g.centre).collect();
-    let radii: Vec<f64> = grains.values().iter().map(|g| g.radius).collect();
-    let mean_radius = radii.iter().sum::<f64>() / radii.len().max(1) as f64;
-    let near = Grid::new(&centres, &radii).near_pairs(touching_tolerance.max(LIKELY * mean_radius));
     let planes = sides.values().iter().map(|side| HalfPlane {
         point: side.start,
         outward: side.outward,
     });
     let container = Container::new(&planes.collect::<Vec<_>>());
+    let unit = container.unit();
+    let discs = grains.values();
+    let mean_radius = discs.iter().map(|g| g.radius).sum::<f64>() / discs.len().max(1) as f64;
+    // Neighbours get near numbers; the caller's come back with the sites.
+    let centres: Vec<Vector> = discs.iter().map(|g| g.centre).collect();
+    let order = spatial_order(&centres);
+    let scale = 1.0 / unit;
+    let at = |&id: &u32| discs[id as usize];
+    let centres: Vec<Vector> = order.iter().map(|id| at(id).centre * scale).collect();
+    let radii: Vec<f64> = order.iter().map(|id| at(id).radius * scale).collect();
+    let grid = Grid::new(&centres, &radii);
+    let near = grid.near_pairs(scale * touching_tolerance.max(LIKELY * mean_radius));
     let edges = match between {
         Between::Touching => Edges::OfNearPairs,
         Between::Neighbours => Edges::All,
     };
-    let diagram = power_diagram(&centres, &radii, &container, &near, edges);
+    let diagram = power_diagram_of(&grid, &container.scaled(scale), &near, edges);
     let choice = Choice {
         grains,
         sides,
+        order: &order,
+        unit,
         between,
         reach,
         touching_tolerance,
         no_length: NO_LENGTH * mean_radius,
     };
-    let mut sites = choice.between_grains(&near, &diagram);
-    sites.extend(choice.at_sides(&diagram));
-    let triangle = |t: &[u32; 3]| t.map(GrainId);
+    let (sites, (triangles, cell_area)) = rayon::join(
+        || choice.sites(&near, &diagram),
+        || {
+            (
+                triangles(&diagram, &order),
+                cell_area(&diagram, &order, unit),
+            )
+        },
+    );
     ContactGraph {
         sites,
-        triangles: diagram
-            .triangles
-            .iter()
-            .chain(&diagram.outer_triangles)
-            .map(triangle)
-            .collect(),
-        cell_area: diagram.cell_area.into(),
+        cell_area,
+        triangles,
     }
+}
+
+/// The triangles by the ids of their grains, lowest first.
+fn triangles(diagram: &PowerDiagram, order: &[u32]) -> Vec<[GrainId; 3]> {
+    let own = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|place| GrainId(order[place as usize]));
+        if a < b.min(c) {
+            [a, b, c]
+        } else if b < c {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        }
+    };
+    let all = diagram.triangles.iter().chain(&diagram.outer_triangles);
+    all.map(own).collect()
+}
+
+fn cell_area(diagram: &PowerDiagram, order: &[u32], unit: f64) -> PerGrain<f64> {
+    let mut areas = PerGrain::filled(0.0, order.len());
+    for (&id, area) in order.iter().zip(&diagram.cell_area) {
+        areas[GrainId(id)] = area * unit * unit;
+    }
+    areas
 }
 
 /// What makes a site of a near pair or an edge.
 struct Choice<'a> {
     grains: &'a PerGrain<Grain>,
     sides: &'a PerSide<Side>,
+    /// The id of the grain at each place.
+    order: &'a [u32],
+    /// Length of the diagram's unit, `[length]`.
+    unit: f64,
     between: Between,
     reach: &'a PerSide<f64>,
     touching_tolerance: f64,
@@ -146,31 +187,61 @@ struct Choice<'a> {
 }
 
 impl Choice<'_> {
-    /// Merges touching pairs and edges, both by (first, second).
-    fn between_grains(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<Site> {
-        let touching = near.iter().filter(|p| p.gap <= self.touching_tolerance);
-        let mut touching = touching.map(|p| (p.first, p.second)).peekable();
-        let mut sites = Vec::new();
-        for edge in &diagram.edges {
-            let pair = (edge.first, edge.second);
-            while let Some(lost) = touching.next_if(|&t| t < pair) {
-                sites.push(self.site(lost, [0.0; 2]));
-            }
-            let touches = touching.next_if_eq(&pair).is_some();
-            if touches || self.between == Between::Neighbours && self.has_length(edge) {
-                sites.push(self.site(pair, edge.parts));
-            }
-        }
-        sites.extend(touching.map(|pair| self.site(pair, [0.0; 2])));
+    /// Between grains by (first, second), then those with sides by (first, second).
+    fn sites(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<Site> {
+        let mut joints = self.joints(near, diagram);
+        joints.par_sort_unstable_by_key(|joint| (joint.first, joint.second));
+        let mut sites: Vec<Site> = joints.par_iter().map(|j| self.site(j)).collect();
+        let mut at_sides = self.at_sides(diagram);
+        at_sides.sort_unstable_by_key(|site| (site.first, site.second));
+        sites.extend(at_sides);
         sites
     }
 
-    fn has_length(&self, edge: &DualEdge) -> bool {
-        edge.parts[0] + edge.parts[1] > self.no_length
+    /// Merges touching pairs and edges, both by (first, second).
+    fn joints(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<DualEdge> {
+        let touching = near
+            .iter()
+            .filter(|p| p.gap * self.unit <= self.touching_tolerance);
+        let mut touching = touching.map(|p| (p.first, p.second)).peekable();
+        let mut joints = Vec::with_capacity(near.len());
+        for edge in &diagram.edges {
+            let pair = (edge.first, edge.second);
+            while let Some(lost) = touching.next_if(|&t| t < pair) {
+                joints.push(self.joint(lost, [0.0; 2]));
+            }
+            let touches = touching.next_if_eq(&pair).is_some();
+            if touches || self.between == Between::Neighbours && self.has_length(edge) {
+                joints.push(self.joint(pair, edge.parts));
+            }
+        }
+        joints.extend(touching.map(|pair| self.joint(pair, [0.0; 2])));
+        joints
     }
 
-    fn site(&self, (first, second): (u32, u32), edge_parts: [f64; 2]) -> Site {
-        let (first, second) = (GrainId(first), GrainId(second));
+    /// An edge between two places, by the ids of their grains, the lower first.
+    fn joint(&self, (first, second): (u32, u32), parts: [f64; 2]) -> DualEdge {
+        let [a, b] = [first, second].map(|place| self.order[place as usize]);
+        let [before, after] = parts.map(|part| part * self.unit);
+        // Seen from the other grain, n and t are reversed.
+        let parts = if a < b {
+            [before, after]
+        } else {
+            [after, before]
+        };
+        DualEdge {
+            first: a.min(b),
+            second: a.max(b),
+            parts,
+        }
+    }
+
+    fn has_length(&self, edge: &DualEdge) -> bool {
+        (edge.parts[0] + edge.parts[1]) * self.unit > self.no_length
+    }
+
+    fn site(&self, joint: &DualEdge) -> Site {
+        let (first, second) = (GrainId(joint.first), GrainId(joint.second));
         let (a, b) = (self.grains[first], self.grains[second]);
         let branch = b.centre - a.centre;
         let l = branch.length();
@@ -191,7 +262,7 @@ impl Choice<'_> {
             normal,
             branch_length: l,
             tangent_point: a.centre + normal * along,
-            edge_parts,
+            edge_parts: joint.parts,
             gap: l - (a.radius + b.radius),
         }
     }
@@ -202,15 +273,13 @@ impl Choice<'_> {
     }
 
     fn site_at_side(&self, edge: &SideEdge) -> Option<Site> {
-        let (grain, id) = (GrainId(edge.disc), SideId::from_index(edge.side as usize));
+        let grain = GrainId(self.order[edge.disc as usize]);
+        let id = SideId::from_index(edge.side as usize);
         let (Grain { centre, radius }, side) = (self.grains[grain], &self.sides[id]);
         let gap = side.distance(centre) - radius;
         // A cell that meets the side only beside its grain's shadow gives no dual length there.
-        let shadow: f64 = edge
-            .parts
-            .iter()
-            .map(|part| part.clamp(-radius, radius))
-            .sum();
+        let parts = edge.parts.map(|part| part * self.unit);
+        let shadow: f64 = parts.iter().map(|part| part.clamp(-radius, radius)).sum();
         let joined = side.present
             && gap <= self.reach[id].max(self.touching_tolerance)
             && shadow > self.no_length;
@@ -220,7 +289,7 @@ impl Choice<'_> {
             normal: side.outward,
             branch_length: radius,
             tangent_point: centre + side.outward * radius,
-            edge_parts: edge.parts,
+            edge_parts: parts,
             gap,
         })
     }

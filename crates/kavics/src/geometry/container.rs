@@ -90,6 +90,12 @@ impl Container {
         (high.x - low.x).max(high.y - low.y)
     }
 
+    /// The power of two just below the size: as unit of length it is exact, and no product can overflow.
+    pub fn unit(&self) -> f64 {
+        let unit = f64::from_bits(self.size().to_bits() & (0x7ff << 52));
+        if unit.is_normal() { unit } else { 1.0 }
+    }
+
     /// The middle of the extents.
     pub(super) fn middle(&self) -> Vector {
         let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
@@ -97,7 +103,8 @@ impl Container {
     }
 
     /// The same container with every length times `factor`.
-    pub(super) fn scaled(&self, factor: f64) -> Self {
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
         let scaled = |side: &HalfPlane| HalfPlane {
             point: side.point * factor,
             outward: side.outward,

@@ -3,6 +3,7 @@
 use geogram_predicates::{Sign, orient_2d, orient_2dlifted};
 
 use crate::geometry::Vector;
+use crate::geometry::near_pairs::Disc;
 
 /// Centres with the height h = |x − o|² − R² over each; the lower hull is the regular triangulation (Aurenhammer 1987).
 #[derive(Debug)]
@@ -14,13 +15,20 @@ pub(super) struct Lifted<'a> {
 }
 
 impl<'a> Lifted<'a> {
-    pub(super) fn new(centres: &'a [Vector], radii: &[f64], origin: Vector) -> Self {
-        let squares = |(&x, &r): (&Vector, &f64)| ((x - origin).length_squared(), r * r);
-        let parts: Vec<(f64, f64)> = centres.iter().zip(radii).map(squares).collect();
-        let largest = parts.iter().fold(0.0, |m: f64, p| m.max(p.0 + p.1));
+    /// The discs, their centres once more, and the point o.
+    pub(super) fn new(discs: &[Disc], centres: &'a [Vector], origin: Vector) -> Self {
+        let mut largest = 0.0_f64;
+        let height = |disc: &Disc| {
+            let (far, own) = (
+                (disc.centre - origin).length_squared(),
+                disc.radius * disc.radius,
+            );
+            largest = largest.max(far + own);
+            far - own
+        };
         Self {
             centres,
-            heights: parts.iter().map(|p| p.0 - p.1).collect(),
+            heights: discs.iter().map(height).collect(),
             noise: 8.0 * f64::EPSILON * largest,
         }
     }
@@ -94,17 +102,27 @@ mod tests {
         Vector::new(0.0, 2.0),
     ];
 
+    fn lifted<'a>(centres: &'a [Vector], radii: &[f64]) -> Lifted<'a> {
+        let disc = |(&centre, &radius): (&Vector, &f64)| Disc {
+            centre,
+            radius,
+            index: 0,
+        };
+        let discs: Vec<Disc> = centres.iter().zip(radii).map(disc).collect();
+        Lifted::new(&discs, centres, Vector::new(1.0, 1.0))
+    }
+
     #[test]
     fn a_large_disc_hides_and_a_small_one_does_not() {
         for (radius, hides) in [(1.1, true), (0.9, false)] {
-            let lifted = Lifted::new(&SQUARE, &[1.0, 1.0, 1.0, radius], Vector::new(1.0, 1.0));
+            let lifted = lifted(&SQUARE, &[1.0, 1.0, 1.0, radius]);
             assert_eq!(lifted.hides([0, 1, 2], 3), Some(hides));
         }
     }
 
     #[test]
     fn four_equal_discs_of_a_square_have_one_diagonal() {
-        let lifted = Lifted::new(&SQUARE, &[1.0; 4], Vector::new(1.0, 1.0));
+        let lifted = lifted(&SQUARE, &[1.0; 4]);
         let one = lifted.hides([0, 1, 2], 3).unwrap();
         assert_eq!(lifted.hides([1, 2, 0], 3), Some(one));
         assert_eq!(lifted.hides([0, 2, 3], 1), Some(one));
@@ -115,14 +133,14 @@ mod tests {
     #[test]
     fn of_two_equal_discs_in_one_place_the_first_wins() {
         let centres = [SQUARE[0], SQUARE[1], SQUARE[2], SQUARE[1]];
-        let lifted = Lifted::new(&centres, &[1.0; 4], Vector::default());
+        let lifted = lifted(&centres, &[1.0; 4]);
         assert_eq!(lifted.hides([0, 1, 2], 3), Some(false));
         assert_eq!(lifted.hides([0, 3, 2], 1), Some(true));
     }
 
     #[test]
     fn three_discs_in_a_row_have_no_radical_centre() {
-        let lifted = Lifted::new(&SQUARE, &[1.0; 4], Vector::default());
+        let lifted = lifted(&SQUARE, &[1.0; 4]);
         assert_eq!(lifted.hides([0, 2, 1], 3), None);
         assert_eq!(lifted.hides([0, 0, 1], 3), None);
     }

@@ -12,6 +12,6 @@ mod vector;
 
 pub use container::{Container, HalfPlane};
 pub use embedding::{Embedding, HalfEdge};
-pub use near_pairs::{Disc, Grid, NearPair};
-pub use power_diagram::{DualEdge, Edges, PowerDiagram, SideEdge, power_diagram};
+pub use near_pairs::{Disc, Grid, NearPair, spatial_order};
+pub use power_diagram::{DualEdge, Edges, PowerDiagram, SideEdge, power_diagram, power_diagram_of};
 pub use vector::Vector;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::geometry::Vector;
 
 /// Discs that one task looks at; fixed, so that the result does not depend on the number of threads.
-pub(super) const DISCS_A_TASK: usize = 1024;
+const DISCS_A_TASK: usize = 8192;
 
 /// A disc and its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,47 +42,60 @@ pub(super) struct Level {
 }
 
 impl Level {
-    fn new(discs: &[Disc]) -> Self {
-        let (low, high) = extent(discs.iter().map(|d| d.centre));
+    /// Counting sort by cells, stable, of the discs of one octave.
+    fn new(discs: &[Disc], of_octave: u64) -> Self {
+        let own = || discs.iter().filter(|d| octave(d.radius) == of_octave);
+        let count = own().count();
+        let mut level = Self::cells(own(), count);
+        let mut start = vec![0_u32; level.columns * level.rows + 1];
+        for disc in own() {
+            start[level.cell(disc) + 1] += 1;
+        }
+        for c in 1..start.len() {
+            start[c] += start[c - 1];
+        }
+        let none = Disc {
+            centre: Vector::default(),
+            radius: 0.0,
+            index: 0,
+        };
+        let mut sorted = vec![none; count];
+        for disc in own() {
+            // Starts move to the ends, which are the starts of the next cells.
+            let place = &mut start[level.cell(disc)];
+            sorted[*place as usize] = *disc;
+            *place += 1;
+        }
+        start.rotate_right(1);
+        start[0] = 0;
+        level.start = start;
+        level.discs = sorted;
+        level
+    }
+
+    /// Cells of at least the largest diameter, not more than two a disc; yet without discs.
+    fn cells<'a>(discs: impl Iterator<Item = &'a Disc> + Clone, count: usize) -> Self {
+        let (low, high) = extent(discs.clone().map(|d| d.centre));
         let (width, height) = (high.x - low.x, high.y - low.y);
-        let largest_radius = discs.iter().fold(0.0, |m: f64, d| m.max(d.radius));
-        let cells = 2.0 * discs.len() as f64;
+        let largest_radius = discs.fold(0.0, |m: f64, d| m.max(d.radius));
+        let cells = 2.0 * count as f64;
         let cell = (2.0 * largest_radius)
             .max((width * height / cells).sqrt())
             .max(width.max(height) / cells);
         let cell = if cell > 0.0 { cell } else { 1.0 };
-        let mut level = Self {
+        Self {
             origin: low,
             cells_a_length: 1.0 / cell,
             columns: (width / cell) as usize + 1,
             rows: (height / cell) as usize + 1,
             start: Vec::new(),
-            discs: discs.to_vec(),
+            discs: Vec::new(),
             largest_radius,
-        };
-        level.sort(discs);
-        level
+        }
     }
 
-    /// Counting sort by cells, stable.
-    fn sort(&mut self, discs: &[Disc]) {
-        let mut start = vec![0_u32; self.columns * self.rows + 1];
-        let cell = |d: &Disc| self.row(d.centre.y) * self.columns + self.column(d.centre.x);
-        for disc in discs {
-            start[cell(disc) + 1] += 1;
-        }
-        for c in 1..start.len() {
-            start[c] += start[c - 1];
-        }
-        let mut next = start.clone();
-        let mut sorted = discs.to_vec();
-        for disc in discs {
-            let place = &mut next[cell(disc)];
-            sorted[*place as usize] = *disc;
-            *place += 1;
-        }
-        self.start = start;
-        self.discs = sorted;
+    fn cell(&self, disc: &Disc) -> usize {
+        self.row(disc.centre.y) * self.columns + self.column(disc.centre.x)
     }
 
     fn column(&self, x: f64) -> usize {
@@ -128,41 +141,38 @@ impl Grid {
 
     /// The grid of these discs; O(N).
     pub(super) fn of_discs(discs: Vec<Disc>) -> Self {
-        let mut octaves: Vec<u64> = discs.iter().map(|disc| octave(disc.radius)).collect();
-        octaves.sort_unstable();
-        octaves.dedup();
-        let of_octave = |&o: &u64| -> Vec<Disc> {
-            let inside = discs.iter().filter(|d| octave(d.radius) == o);
-            inside.copied().collect()
-        };
-        let levels = octaves.iter().map(|o| Level::new(&of_octave(o))).collect();
+        let mut octaves = vec![false; 1 << 12];
+        for disc in &discs {
+            octaves[octave(disc.radius) as usize] = true;
+        }
+        let octaves: Vec<u64> = (0..).zip(octaves).filter(|o| o.1).map(|o| o.0).collect();
+        let levels = octaves.par_iter().map(|&o| Level::new(&discs, o)).collect();
         Self { discs, levels }
     }
 
-    /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap.
+    /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap, and fastest
+    /// where neighbours have near numbers.
     pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
-        let mut tasks: Vec<Vec<NearPair>> = Vec::new();
-        for (finest, level) in self.levels.iter().enumerate() {
-            let of_chunk = |discs: &[Disc]| {
-                let mut pairs = Vec::new();
-                for disc in discs {
-                    self.near_pairs_of(disc, finest, reach, &mut pairs);
-                }
-                pairs
-            };
-            let chunks = level.discs.par_chunks(DISCS_A_TASK).map(of_chunk);
-            tasks.extend(chunks.collect::<Vec<_>>());
-        }
-        sorted(&tasks, self.discs.len())
+        let of_chunk = |discs: &[Disc]| {
+            let mut pairs = Vec::with_capacity(3 * discs.len());
+            for disc in discs {
+                let before = pairs.len();
+                self.near_pairs_of(disc, reach, &mut pairs);
+                pairs[before..].sort_unstable_by_key(|p| p.second);
+            }
+            pairs
+        };
+        let chunks = self.discs.par_chunks(DISCS_A_TASK).map(of_chunk);
+        chunks.collect::<Vec<_>>().concat()
     }
 
-    /// The pairs of a disc with larger discs, and with those of higher numbers in its own level.
-    fn near_pairs_of(&self, disc: &Disc, finest: usize, reach: f64, pairs: &mut Vec<NearPair>) {
-        for (k, level) in self.levels.iter().enumerate().skip(finest) {
+    /// The pairs of a disc with those of higher numbers.
+    fn near_pairs_of(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
+        for level in &self.levels {
             let distance = (disc.radius + level.largest_radius + reach).max(0.0);
             for row in level.around(disc.centre, distance * (1.0 + 1e-9)) {
                 for other in row {
-                    if k > finest || other.index > disc.index {
+                    if other.index > disc.index {
                         pairs.extend(near_pair(disc, other, reach));
                     }
                 }
@@ -181,37 +191,45 @@ fn near_pair(disc: &Disc, other: &Disc, reach: f64) -> Option<NearPair> {
     }
     let gap = squared.sqrt() - radii;
     (gap <= reach).then(|| NearPair {
-        first: disc.index.min(other.index),
-        second: disc.index.max(other.index),
+        first: disc.index,
+        second: other.index,
         gap,
     })
-}
-
-/// The pairs by (first, second): counting sort by the first, then each disc's own.
-fn sorted(tasks: &[Vec<NearPair>], discs: usize) -> Vec<NearPair> {
-    let mut start = vec![0_u32; discs + 1];
-    for pair in tasks.iter().flatten() {
-        start[pair.first as usize + 1] += 1;
-    }
-    for i in 0..discs {
-        start[i + 1] += start[i];
-    }
-    let mut next = start.clone();
-    let mut pairs = tasks.concat();
-    for pair in tasks.iter().flatten() {
-        let place = &mut next[pair.first as usize];
-        pairs[*place as usize] = *pair;
-        *place += 1;
-    }
-    for range in start.windows(2) {
-        pairs[range[0] as usize..range[1] as usize].sort_unstable_by_key(|p| p.second);
-    }
-    pairs
 }
 
 /// The binary exponent of a radius.
 fn octave(radius: f64) -> u64 {
     radius.abs().to_bits() >> 52
+}
+
+/// The numbers of points along rows of cells with about two points each: neighbours come near each other.
+pub fn spatial_order(points: &[Vector]) -> Vec<u32> {
+    let (low, high) = extent(points.iter().copied());
+    let (width, height) = (high.x - low.x, high.y - low.y);
+    let cells = 0.5 * points.len() as f64;
+    let side = (width * height / cells)
+        .sqrt()
+        .max(width.max(height) / cells);
+    let scale = if side > 0.0 { 1.0 / side } else { 0.0 };
+    let along = |offset: f64, extent: f64| (offset.max(0.0) * scale).min(extent * scale) as usize;
+    let columns = along(width, width) + 1;
+    let rows = along(height, height) + 1;
+    // Infinite coordinates are beyond every cell, NaN is before.
+    let cell = |p: &Vector| along(p.y - low.y, height) * columns + along(p.x - low.x, width);
+    let mut next = vec![0_u32; columns * rows + 1];
+    for point in points {
+        next[cell(point) + 1] += 1;
+    }
+    for c in 1..next.len() {
+        next[c] += next[c - 1];
+    }
+    let mut order = vec![0; points.len()];
+    for (number, point) in (0..).zip(points) {
+        let place = &mut next[cell(point)];
+        order[*place as usize] = number;
+        *place += 1;
+    }
+    order
 }
 
 /// The lowest and highest coordinates of the finite points.
@@ -263,6 +281,21 @@ mod tests {
         }
         let around = pairs(&discs, 1e-9);
         assert_eq!(around.iter().filter(|p| p.0 == 0).count(), 600);
+    }
+
+    #[test]
+    fn the_spatial_order_goes_along_rows() {
+        let points: Vec<_> = (0..64)
+            .map(|k| Vector::new(f64::from(k / 8), f64::from(k % 8)))
+            .collect();
+        let order = spatial_order(&points);
+        let rows: Vec<f64> = order.iter().map(|&k| points[k as usize].y).collect();
+        assert!(rows.windows(2).all(|pair| pair[1] > pair[0] - 1.5));
+        assert_eq!(
+            spatial_order(&[Vector::new(f64::NAN, 1.0), Vector::new(3.0, f64::INFINITY)]).len(),
+            2
+        );
+        assert!(spatial_order(&[]).is_empty());
     }
 
     #[test]

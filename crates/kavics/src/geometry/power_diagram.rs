@@ -82,28 +82,54 @@ pub fn power_diagram(
     near: &[NearPair],
     edges: Edges,
 ) -> PowerDiagram {
-    // A power of two as unit of length: exact, and no product can overflow.
-    let unit = f64::from_bits(container.size().to_bits() & (0x7ff << 52));
-    let unit = if unit.is_normal() { unit } else { 1.0 };
+    let unit = container.unit();
     let scale = 1.0 / unit;
     let centres: Vec<Vector> = centres.iter().map(|&x| x * scale).collect();
     let radii: Vec<f64> = radii.iter().map(|&r| r * scale).collect();
-    let clipping = Clipping::new(&centres, &radii, container.scaled(scale));
-    let (links, unlinked) = links(&radii, near, scale);
-    let graph = Embedding::new(&centres, &links);
+    let scaled = |pair: &NearPair| NearPair {
+        gap: pair.gap * scale,
+        ..*pair
+    };
+    let near: Vec<NearPair> = near.iter().map(scaled).collect();
+    let grid = Grid::new(&centres, &radii);
+    let mut diagram = power_diagram_of(&grid, &container.scaled(scale), &near, edges);
+    diagram.scale(unit);
+    diagram
+}
+
+/// As [`power_diagram`], of the discs of a grid, in lengths for which the container's unit is 1.
+pub fn power_diagram_of(
+    grid: &Grid,
+    container: &Container,
+    near: &[NearPair],
+    edges: Edges,
+) -> PowerDiagram {
+    let centres: Vec<Vector> = grid.discs.iter().map(|disc| disc.centre).collect();
+    let (links, unlinked) = links(&grid.discs, near);
+    let (lifted, graph) = rayon::join(
+        || Lifted::new(&grid.discs, &centres, container.middle()),
+        || Embedding::new(&centres, &links),
+    );
+    let size = container.size();
     let triangulation = Triangulation {
-        discs: &clipping.discs,
+        discs: &grid.discs,
         points: &centres,
         graph: &graph,
-        lifted: &clipping.lifted,
-        container: &clipping.container,
-        margin: 1e-9 * clipping.size,
+        lifted: &lifted,
+        container,
+        margin: 1e-9 * size,
         diagonals: edges == Edges::All,
     };
     let mut faces = triangulation.faces();
     for disc in unlinked {
         faces.cells[disc as usize].open = true;
     }
+    let clipping = Clipping {
+        container,
+        size,
+        grid,
+        lifted,
+    };
     let mut cut = clipping.open_cells(&mut faces, &graph);
     if edges == Edges::OfNearPairs {
         let key = |pair: &NearPair| (pair.first, pair.second);
@@ -114,21 +140,19 @@ pub fn power_diagram(
         cut.diagram.edges.retain(is_near);
     }
     clipping.add_outer_triangles(&mut cut, &graph);
-    let mut diagram = together(faces, cut, &graph, &links);
-    diagram.scale(unit);
-    diagram
+    together(faces, cut, &graph, &links)
 }
 
 /// The near pairs that touch but for a small share of the smaller radius, and the discs of the others.
-fn links(radii: &[f64], near: &[NearPair], scale: f64) -> (Vec<[u32; 2]>, Vec<u32>) {
+fn links(discs: &[Disc], near: &[NearPair]) -> (Vec<[u32; 2]>, Vec<u32>) {
     let (mut links, mut unlinked) = (Vec::with_capacity(near.len()), Vec::new());
     for pair in near {
-        let smaller = radii[pair.first as usize].min(radii[pair.second as usize]);
-        let discs = [pair.first, pair.second];
-        if pair.gap.abs() * scale <= NEAR * smaller {
-            links.push(discs);
+        let ends = [pair.first, pair.second];
+        let [a, b] = ends.map(|disc| discs[disc as usize].radius);
+        if pair.gap.abs() <= NEAR * a.min(b) {
+            links.push(ends);
         } else {
-            unlinked.extend(discs);
+            unlinked.extend(ends);
         }
     }
     (links, unlinked)
@@ -230,28 +254,16 @@ struct CutCell {
 
 /// All that the cells are cut from.
 struct Clipping<'a> {
-    container: Container,
+    container: &'a Container,
     size: f64,
-    discs: Vec<Disc>,
-    grid: Grid,
+    grid: &'a Grid,
     lifted: Lifted<'a>,
 }
 
-impl<'a> Clipping<'a> {
-    fn new(centres: &'a [Vector], radii: &[f64], container: Container) -> Self {
-        let grid = Grid::new(centres, radii);
-        Self {
-            size: container.size(),
-            discs: grid.discs.clone(),
-            grid,
-            lifted: Lifted::new(centres, radii, container.middle()),
-            container,
-        }
-    }
-
+impl Clipping<'_> {
     /// Cuts out the cells of the open discs, and of those around them that then turn out to be wrong.
     fn open_cells(&self, faces: &mut Faces, graph: &Embedding) -> CutOut {
-        let all = 0..self.discs.len() as u32;
+        let all = 0..self.grid.discs.len() as u32;
         let mut wanted: Vec<u32> = all.filter(|&i| faces.cells[i as usize].open).collect();
         let mut cut: Vec<CutCell> = Vec::new();
         while !wanted.is_empty() {
@@ -278,7 +290,7 @@ impl<'a> Clipping<'a> {
     fn cells(&self, discs: &[u32], graph: &Embedding) -> Vec<CutCell> {
         let tasks = discs.par_chunks(DISCS_A_TASK).map(|discs| {
             let mut cell = Cell::default();
-            let cut = |&disc| self.cell(&self.discs[disc as usize], graph, &mut cell);
+            let cut = |&disc| self.cell(&self.grid.discs[disc as usize], graph, &mut cell);
             discs.iter().map(cut).collect::<Vec<_>>()
         });
         tasks.collect::<Vec<_>>().into_iter().flatten().collect()
@@ -290,7 +302,7 @@ impl<'a> Clipping<'a> {
             ..CutCell::default()
         };
         self.start(disc, 1e-6 * self.size, cell);
-        self.cut_out(disc, graph, &self.grid, cell);
+        self.cut_out(disc, graph, self.grid, cell);
         self.collect_triangles(disc, cell, &mut cut.diagram);
         cut.gaps = gaps(disc.index, cell);
         for (a, b, _) in cell.radical_centres() {
@@ -310,7 +322,7 @@ impl<'a> Clipping<'a> {
     /// Adds the triangles with their radical centre beyond the container that no cell within it knows.
     fn add_outer_triangles(&self, cut: &mut CutOut, graph: &Embedding) {
         let gaps = std::mem::take(&mut cut.gaps);
-        let all = match outer_triangles(gaps, &self.discs, &self.lifted) {
+        let all = match outer_triangles(gaps, &self.grid.discs, &self.lifted) {
             Some(triangles) => triangles
                 .into_iter()
                 .filter(|triangle| triangle.centre.length() < OUTSIDE * self.size)
@@ -327,10 +339,10 @@ impl<'a> Clipping<'a> {
     /// The same, where the gaps do not fit together: from cells that reach far out. Cells that meet there reach
     /// through the container's boundary, each from its own centre, so only those can own or cut one.
     fn far_triangles(&self, at_boundary: &[u32], graph: &Embedding) -> Vec<[u32; 3]> {
-        let of_boundary = at_boundary.iter().map(|&k| self.discs[k as usize]);
+        let of_boundary = at_boundary.iter().map(|&k| self.grid.discs[k as usize]);
         let grid = Grid::of_discs(of_boundary.collect());
         let of_disc = |cell: &mut Cell, &index: &u32| {
-            let disc = &self.discs[index as usize];
+            let disc = &self.grid.discs[index as usize];
             self.start(disc, OUTSIDE * self.size, cell);
             self.cut_out(disc, graph, &grid, cell);
             let mut found = PowerDiagram::default();
@@ -344,7 +356,7 @@ impl<'a> Clipping<'a> {
     /// Cuts the cell of a disc out of what it was started with, by its neighbours in the graph and all of a grid.
     fn cut_out(&self, disc: &Disc, graph: &Embedding, grid: &Grid, cell: &mut Cell) {
         for other in graph.neighbours(disc.index) {
-            self.cut(disc, &self.discs[other as usize], cell);
+            self.cut(disc, &self.grid.discs[other as usize], cell);
         }
         for level in &grid.levels {
             let grown = level.largest_radius * level.largest_radius - disc.radius * disc.radius;
@@ -373,7 +385,7 @@ impl<'a> Clipping<'a> {
 
     /// The container, grown by a margin, as the first cell of a disc.
     fn start(&self, disc: &Disc, margin: f64, cell: &mut Cell) {
-        let container = &self.container;
+        let container = self.container;
         let around = &container.around;
         let normal = |k: usize| container.sides[around[k % around.len()] as usize].outward;
         let polygon = around.iter().zip(&container.corners).enumerate();
