@@ -132,14 +132,11 @@ pub fn contact_graph(
         touching_tolerance,
         no_length: NO_LENGTH * mean_radius,
     };
-    let (sites, (triangles, cell_area)) = rayon::join(
-        || choice.sites(&near, &diagram),
-        || {
-            (
-                triangles(&diagram, &order),
-                cell_area(&diagram, &order, unit),
-            )
-        },
+    let joints = choice.joints(&near, &diagram);
+    let (at_sides, cell_area) = (choice.at_sides(&diagram), cell_area(&diagram, &order, unit));
+    let (sites, triangles) = rayon::join(
+        || choice.sites(joints, at_sides),
+        || triangles(diagram, &order),
     );
     ContactGraph {
         sites,
@@ -149,8 +146,8 @@ pub fn contact_graph(
 }
 
 /// The triangles by the ids of their grains, lowest first.
-fn triangles(diagram: &PowerDiagram, order: &[u32]) -> Vec<[GrainId; 3]> {
-    let own = |triangle: &[u32; 3]| {
+fn triangles(mut diagram: PowerDiagram, order: &[u32]) -> Vec<[GrainId; 3]> {
+    let own = |triangle: [u32; 3]| {
         let [a, b, c] = triangle.map(|place| GrainId(order[place as usize]));
         if a < b.min(c) {
             [a, b, c]
@@ -160,8 +157,8 @@ fn triangles(diagram: &PowerDiagram, order: &[u32]) -> Vec<[GrainId; 3]> {
             [c, a, b]
         }
     };
-    let all = diagram.triangles.iter().chain(&diagram.outer_triangles);
-    all.map(own).collect()
+    diagram.triangles.append(&mut diagram.outer_triangles);
+    diagram.triangles.into_iter().map(own).collect()
 }
 
 fn cell_area(diagram: &PowerDiagram, order: &[u32], unit: f64) -> PerGrain<f64> {
@@ -188,39 +185,35 @@ struct Choice<'a> {
 
 impl Choice<'_> {
     /// Between grains by (first, second), then those with sides by (first, second).
-    fn sites(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<Site> {
-        let mut joints = self.joints(near, diagram);
-        joints.par_sort_unstable_by_key(|joint| (joint.first, joint.second));
-        let mut sites: Vec<Site> = joints.par_iter().map(|j| self.site(j)).collect();
-        let mut at_sides = self.at_sides(diagram);
+    fn sites(&self, joints: Vec<DualEdge>, mut at_sides: Vec<Site>) -> Vec<Site> {
+        let joints = sorted(joints, self.grains.len());
         at_sides.sort_unstable_by_key(|site| (site.first, site.second));
-        sites.extend(at_sides);
+        let mut sites = Vec::with_capacity(joints.len() + at_sides.len());
+        sites.par_extend(joints.par_iter().map(|joint| self.site(joint)));
+        sites.append(&mut at_sides);
         sites
     }
 
-    /// Merges touching pairs and edges, both by (first, second).
+    /// Pairs of grains that carry a contact, with their edge; touching pairs without edge too.
     fn joints(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<DualEdge> {
-        let touching = near
+        let neighbours = self.between == Between::Neighbours;
+        let touching = |(pair, &parts): (&NearPair, &[f64; 2])| {
+            let touches = pair.gap * self.unit <= self.touching_tolerance;
+            let wanted = touches && !(neighbours && self.has_length(parts));
+            wanted.then(|| self.joint(pair.first, pair.second, parts))
+        };
+        let pairs = near.iter().zip(&diagram.near_edges);
+        let mut joints: Vec<DualEdge> = pairs.filter_map(touching).collect();
+        let edges = diagram
+            .edges
             .iter()
-            .filter(|p| p.gap * self.unit <= self.touching_tolerance);
-        let mut touching = touching.map(|p| (p.first, p.second)).peekable();
-        let mut joints = Vec::with_capacity(near.len());
-        for edge in &diagram.edges {
-            let pair = (edge.first, edge.second);
-            while let Some(lost) = touching.next_if(|&t| t < pair) {
-                joints.push(self.joint(lost, [0.0; 2]));
-            }
-            let touches = touching.next_if_eq(&pair).is_some();
-            if touches || self.between == Between::Neighbours && self.has_length(edge) {
-                joints.push(self.joint(pair, edge.parts));
-            }
-        }
-        joints.extend(touching.map(|pair| self.joint(pair, [0.0; 2])));
+            .filter(|edge| self.has_length(edge.parts));
+        joints.extend(edges.map(|edge| self.joint(edge.first, edge.second, edge.parts)));
         joints
     }
 
     /// An edge between two places, by the ids of their grains, the lower first.
-    fn joint(&self, (first, second): (u32, u32), parts: [f64; 2]) -> DualEdge {
+    fn joint(&self, first: u32, second: u32, parts: [f64; 2]) -> DualEdge {
         let [a, b] = [first, second].map(|place| self.order[place as usize]);
         let [before, after] = parts.map(|part| part * self.unit);
         // Seen from the other grain, n and t are reversed.
@@ -236,8 +229,8 @@ impl Choice<'_> {
         }
     }
 
-    fn has_length(&self, edge: &DualEdge) -> bool {
-        (edge.parts[0] + edge.parts[1]) * self.unit > self.no_length
+    fn has_length(&self, parts: [f64; 2]) -> bool {
+        (parts[0] + parts[1]) * self.unit > self.no_length
     }
 
     fn site(&self, joint: &DualEdge) -> Site {
@@ -293,6 +286,28 @@ impl Choice<'_> {
             gap,
         })
     }
+}
+
+/// Edges by (first, second): counting sort by the first, then each grain's own.
+fn sorted(edges: Vec<DualEdge>, grains: usize) -> Vec<DualEdge> {
+    let mut start = vec![0_u32; grains + 1];
+    for edge in &edges {
+        start[edge.first as usize + 1] += 1;
+    }
+    for grain in 0..grains {
+        start[grain + 1] += start[grain];
+    }
+    let mut next = start.clone();
+    let mut sorted = edges.clone();
+    for edge in edges {
+        let place = &mut next[edge.first as usize];
+        sorted[*place as usize] = edge;
+        *place += 1;
+    }
+    for own in start.windows(2) {
+        sorted[own[0] as usize..own[1] as usize].sort_unstable_by_key(|edge| edge.second);
+    }
+    sorted
 }
 
 impl Site {

@@ -24,11 +24,11 @@ const LONGEST: usize = 64;
 pub(super) struct Faces {
     /// Cells of the discs.
     pub cells: Vec<FaceCell>,
-    /// Length of the dual edge to the left of each half-edge.
-    pub heights: Vec<f64>,
+    /// Length of each half-edge times that of the dual edge on its left: twice the area of the triangle over it.
+    pub doubled_areas: Vec<f64>,
     /// Triangles, counter-clockwise, lowest number first.
     pub triangles: Vec<[u32; 3]>,
-    /// Dual edges across the faces, when asked for.
+    /// Dual edges across the faces, when asked for; each in two parts.
     pub diagonals: Vec<DualEdge>,
 }
 
@@ -86,10 +86,10 @@ struct Task<'a> {
     first: usize,
     first_slot: u32,
     cells: &'a mut [FaceCell],
-    heights: &'a mut [f64],
+    doubled_areas: &'a mut [f64],
     seen: Vec<bool>,
     other_cells: Vec<(u32, FaceCell)>,
-    other_heights: Vec<(u32, f64)>,
+    other_doubled_areas: Vec<(u32, f64)>,
     triangles: Vec<[u32; 3]>,
     diagonals: Vec<DualEdge>,
     face: Vec<Corner>,
@@ -110,35 +110,43 @@ impl Triangulation<'_> {
         let nodes = self.discs.len();
         let mut faces = Faces {
             cells: vec![FaceCell::default(); nodes],
-            heights: vec![0.0; self.graph.half_edges().len()],
+            doubled_areas: vec![0.0; self.graph.half_edges().len()],
             ..Faces::default()
         };
-        let slots = by_nodes(self.graph.starts(), &mut faces.heights);
+        let slots = by_nodes(self.graph.starts(), &mut faces.doubled_areas);
         let mut cells = faces.cells.as_mut_slice();
         let tasks: Vec<Task<'_>> = slots
             .into_iter()
-            .map(|(nodes, heights)| {
+            .map(|(nodes, doubled_areas)| {
                 let own;
                 (own, cells) = std::mem::take(&mut cells).split_at_mut(nodes.len());
-                Task::new(nodes.start, self.graph.starts()[nodes.start], own, heights)
+                Task::new(
+                    nodes.start,
+                    self.graph.starts()[nodes.start],
+                    own,
+                    doubled_areas,
+                )
             })
             .collect();
         let work = |mut task: Task<'_>| {
             self.task(&mut task);
             (
                 task.other_cells,
-                task.other_heights,
+                task.other_doubled_areas,
                 task.triangles,
                 task.diagonals,
             )
         };
         let found: Vec<_> = tasks.into_par_iter().map(work).collect();
-        for (cells, heights, triangles, diagonals) in found {
+        faces
+            .triangles
+            .reserve_exact(found.iter().map(|task| task.2.len()).sum());
+        for (cells, doubled_areas, triangles, diagonals) in found {
             for (disc, cell) in cells {
                 faces.cells[disc as usize].add(cell);
             }
-            for (slot, height) in heights {
-                faces.heights[slot as usize] = height;
+            for (slot, doubled) in doubled_areas {
+                faces.doubled_areas[slot as usize] = doubled;
             }
             faces.triangles.extend(triangles);
             faces.diagonals.extend(diagonals);
@@ -265,12 +273,12 @@ impl Triangulation<'_> {
             let doubled = e.cross(triangle.centre - a.centre);
             areas[from] += 0.5 * foot * doubled;
             areas[to] += 0.5 * (1.0 - foot) * doubled;
-            let height = doubled * inverse.sqrt();
             if of_graph {
-                task.set_height(p.slot, height);
+                task.set_doubled(p.slot, doubled);
             } else if self.diagonals {
-                task.diagonals
-                    .push(half_of_diagonal(a.index, b.index, height));
+                let height = doubled * inverse.sqrt();
+                let half = half_of_diagonal(a.index, b.index, height);
+                task.diagonals.push(half);
             }
         }
         for (number, area) in numbers.into_iter().zip(areas) {
@@ -292,11 +300,12 @@ impl Triangulation<'_> {
                     continue;
                 }
                 let [a, b] = [node, half_edge.to].map(|n| &self.discs[n as usize]);
-                let length = faces.heights[slot as usize] + faces.heights[half_edge.twin as usize];
-                // What rounding the heights of the lifted discs can do to a dual length.
-                let e = (b.centre - a.centre).length();
-                let error = 1e3 * (self.lifted.noise / e + f64::EPSILON * (a.radius + b.radius));
-                if length <= error {
+                let product = faces.doubled_areas[slot as usize]
+                    + faces.doubled_areas[half_edge.twin as usize];
+                // What rounding the doubled_areas of the lifted discs can do to it.
+                let radii = a.radius + b.radius;
+                let error = 1e3 * (self.lifted.noise + f64::EPSILON * radii * radii);
+                if product <= error {
                     faces.cells[node as usize].open = true;
                     faces.cells[half_edge.to as usize].open = true;
                 }
@@ -342,17 +351,18 @@ impl<'a> Task<'a> {
         first: usize,
         first_slot: u32,
         cells: &'a mut [FaceCell],
-        heights: &'a mut [f64],
+        doubled_areas: &'a mut [f64],
     ) -> Self {
         Self {
             first,
             first_slot,
-            seen: vec![false; heights.len()],
-            cells,
-            heights,
+            seen: vec![false; doubled_areas.len()],
+            doubled_areas,
             other_cells: Vec::new(),
-            other_heights: Vec::new(),
-            triangles: Vec::new(),
+            other_doubled_areas: Vec::new(),
+            // Twice as many triangles as discs, but for the boundary.
+            triangles: Vec::with_capacity(2 * cells.len() + 64),
+            cells,
             diagonals: Vec::new(),
             face: Vec::new(),
             chains: Vec::new(),
@@ -367,11 +377,11 @@ impl<'a> Task<'a> {
         }
     }
 
-    fn set_height(&mut self, slot: u32, height: f64) {
+    fn set_doubled(&mut self, slot: u32, doubled: f64) {
         let own = slot.checked_sub(self.first_slot);
-        match own.and_then(|own| self.heights.get_mut(own as usize)) {
-            Some(place) => *place = height,
-            None => self.other_heights.push((slot, height)),
+        match own.and_then(|own| self.doubled_areas.get_mut(own as usize)) {
+            Some(place) => *place = doubled,
+            None => self.other_doubled_areas.push((slot, doubled)),
         }
     }
 

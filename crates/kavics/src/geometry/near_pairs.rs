@@ -1,5 +1,7 @@
 //! Near pairs of discs: cell grids, one for each octave of the radius, so that unequal discs cost no more than equal ones.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::geometry::Vector;
@@ -79,7 +81,8 @@ impl Level {
         let (width, height) = (high.x - low.x, high.y - low.y);
         let largest_radius = discs.fold(0.0, |m: f64, d| m.max(d.radius));
         let cells = 2.0 * count as f64;
-        let cell = (2.0 * largest_radius)
+        // A little more than a diameter, so that what nearly touches lies in neighbouring cells.
+        let cell = (2.05 * largest_radius)
             .max((width * height / cells).sqrt())
             .max(width.max(height) / cells);
         let cell = if cell > 0.0 { cell } else { 1.0 };
@@ -150,35 +153,89 @@ impl Grid {
         Self { discs, levels }
     }
 
-    /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap, and fastest
-    /// where neighbours have near numbers.
+    /// All pairs whose gap is at most `reach`, level by level in the order of their cells; O(N) for discs that hardly
+    /// overlap.
     pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
-        let of_chunk = |discs: &[Disc]| {
-            let mut pairs = Vec::with_capacity(3 * discs.len());
-            for disc in discs {
-                let before = pairs.len();
-                self.near_pairs_of(disc, reach, &mut pairs);
-                pairs[before..].sort_unstable_by_key(|p| p.second);
+        let tasks: Vec<(usize, Range<usize>)> = self.tasks().collect();
+        let of_task = |(level, rows): (usize, Range<usize>)| {
+            let discs = self.levels[level].of_rows(&rows);
+            let mut pairs = Vec::with_capacity(2 * discs.len() + 64);
+            for row in rows {
+                self.levels[level].near_pairs(row, reach, &mut pairs);
+            }
+            for coarser in &self.levels[level + 1..] {
+                for disc in discs {
+                    coarser.near_pairs_with(disc, reach, &mut pairs);
+                }
             }
             pairs
         };
-        let chunks = self.discs.par_chunks(DISCS_A_TASK).map(of_chunk);
-        chunks.collect::<Vec<_>>().concat()
+        let found: Vec<Vec<NearPair>> = tasks.into_par_iter().map(of_task).collect();
+        found.concat()
     }
 
-    /// The pairs of a disc with those of higher numbers.
-    fn near_pairs_of(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
-        for level in &self.levels {
-            let distance = (disc.radius + level.largest_radius + reach).max(0.0);
-            for row in level.around(disc.centre, distance * (1.0 + 1e-9)) {
-                for other in row {
-                    if other.index > disc.index {
-                        pairs.extend(near_pair(disc, other, reach));
-                    }
+    /// The levels, in stretches of rows of cells with about the same number of discs.
+    fn tasks(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
+        self.levels.iter().enumerate().flat_map(|(k, level)| {
+            let rows_a_task = (level.rows * DISCS_A_TASK).div_ceil(level.discs.len().max(1));
+            let firsts = (0..level.rows).step_by(rows_a_task.max(1));
+            firsts.map(move |row| (k, row..(row + rows_a_task).min(level.rows)))
+        })
+    }
+}
+
+impl Level {
+    /// The discs of some rows of cells.
+    fn of_rows(&self, rows: &Range<usize>) -> &[Disc] {
+        let [from, to] = [rows.start, rows.end].map(|row| self.start[row * self.columns] as usize);
+        &self.discs[from..to]
+    }
+
+    /// The discs of the cells from `first` to `last` of a row.
+    fn of_cells(&self, row: usize, first: usize, last: usize) -> Range<usize> {
+        let cell = row * self.columns;
+        self.start[cell + first] as usize..self.start[cell + last + 1] as usize
+    }
+
+    /// The pairs of the discs in a row of cells with those after them: in the row, and in the rows above.
+    fn near_pairs(&self, row: usize, reach: f64, pairs: &mut Vec<NearPair>) {
+        let farthest = (2.0 * self.largest_radius + reach).max(0.0) * (1.0 + 1e-9);
+        let rings = (farthest * self.cells_a_length) as usize + 1;
+        let last_row = row.saturating_add(rings).min(self.rows - 1);
+        for column in 0..self.columns {
+            let own = self.of_cells(row, column, column);
+            if own.is_empty() {
+                continue;
+            }
+            let first = column.saturating_sub(rings);
+            let last = column.saturating_add(rings).min(self.columns - 1);
+            let ahead = self.of_cells(row, column, last).end;
+            for k in own {
+                let disc = &self.discs[k];
+                add_near(disc, &self.discs[k + 1..ahead], reach, pairs);
+                for above in row + 1..=last_row {
+                    let others = self.of_cells(above, first, last);
+                    add_near(disc, &self.discs[others], reach, pairs);
                 }
             }
         }
     }
+
+    /// The pairs of one disc with those of this level.
+    fn near_pairs_with(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
+        let distance = (disc.radius + self.largest_radius + reach).max(0.0);
+        for row in self.around(disc.centre, distance * (1.0 + 1e-9)) {
+            add_near(disc, row, reach, pairs);
+        }
+    }
+}
+
+fn add_near(disc: &Disc, others: &[Disc], reach: f64, pairs: &mut Vec<NearPair>) {
+    pairs.extend(
+        others
+            .iter()
+            .filter_map(|other| near_pair(disc, other, reach)),
+    );
 }
 
 /// The pair of two discs, if their gap is at most `reach`.
@@ -191,8 +248,8 @@ fn near_pair(disc: &Disc, other: &Disc, reach: f64) -> Option<NearPair> {
     }
     let gap = squared.sqrt() - radii;
     (gap <= reach).then(|| NearPair {
-        first: disc.index,
-        second: other.index,
+        first: disc.index.min(other.index),
+        second: disc.index.max(other.index),
         gap,
     })
 }
@@ -255,7 +312,9 @@ mod tests {
         let centres: Vec<_> = discs.iter().map(|d| Vector::new(d.0, d.1)).collect();
         let radii: Vec<_> = discs.iter().map(|d| d.2).collect();
         let pairs = Grid::new(&centres, &radii).near_pairs(reach);
-        pairs.iter().map(|p| (p.first, p.second)).collect()
+        let mut pairs: Vec<_> = pairs.iter().map(|p| (p.first, p.second)).collect();
+        pairs.sort_unstable();
+        pairs
     }
 
     #[test]

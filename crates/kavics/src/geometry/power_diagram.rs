@@ -25,7 +25,7 @@ const OUTSIDE: f64 = 1e6;
 /// Which edges of a power diagram are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
-    /// Those of the near pairs.
+    /// Those of the near pairs alone.
     OfNearPairs,
     /// All.
     All,
@@ -59,7 +59,9 @@ pub struct SideEdge {
 pub struct PowerDiagram {
     /// Area of each cell, `[length²]`.
     pub cell_area: Vec<f64>,
-    /// Edges between cells by (first, second), as wanted; edges of no length may be among them.
+    /// The common edge of each near pair, of no length where there is none; its parts as in [`DualEdge`].
+    pub near_edges: Vec<[f64; 2]>,
+    /// All edges between cells by (first, second), where wanted; edges of no length may be among them.
     pub edges: Vec<DualEdge>,
     /// Edges on the container by (disc, side).
     pub side_edges: Vec<SideEdge>,
@@ -73,7 +75,7 @@ pub struct PowerDiagram {
 
 /// The power diagram of discs in a container.
 ///
-/// `near` speeds it up: pairs that are likely neighbours, by (first, second), such as all discs that touch.
+/// `near` speeds it up: pairs that are likely neighbours, such as all discs that touch.
 /// The same bits on any number of threads; degenerate vertices are split the same way by all cells that meet there.
 pub fn power_diagram(
     centres: &[Vector],
@@ -131,25 +133,30 @@ pub fn power_diagram_of(
         lifted,
     };
     let mut cut = clipping.open_cells(&mut faces, &graph);
-    if edges == Edges::OfNearPairs {
-        let key = |pair: &NearPair| (pair.first, pair.second);
-        let is_near = |edge: &DualEdge| {
-            let own = (edge.first, edge.second);
-            near.binary_search_by_key(&own, key).is_ok()
-        };
-        cut.diagram.edges.retain(is_near);
-    }
     clipping.add_outer_triangles(&mut cut, &graph);
-    together(faces, cut, &graph, &links)
+    let mut diagram = PowerDiagram {
+        near_edges: near_edges(near, &faces, &cut, &graph, &grid.discs),
+        ..PowerDiagram::default()
+    };
+    if edges == Edges::All {
+        diagram.edges = all_edges(near, &diagram.near_edges, &mut faces, &mut cut);
+    }
+    diagram.add_cells(faces, cut);
+    diagram
 }
 
-/// The near pairs that touch but for a small share of the smaller radius, and the discs of the others.
+/// Whether a near pair is an edge of the graph: its discs touch but for a small share of the smaller radius.
+fn is_link(discs: &[Disc], pair: &NearPair) -> bool {
+    let [a, b] = [pair.first, pair.second].map(|disc| discs[disc as usize].radius);
+    pair.gap.abs() <= NEAR * a.min(b)
+}
+
+/// The edges of the graph, and the discs of the other near pairs.
 fn links(discs: &[Disc], near: &[NearPair]) -> (Vec<[u32; 2]>, Vec<u32>) {
     let (mut links, mut unlinked) = (Vec::with_capacity(near.len()), Vec::new());
     for pair in near {
         let ends = [pair.first, pair.second];
-        let [a, b] = ends.map(|disc| discs[disc as usize].radius);
-        if pair.gap.abs() <= NEAR * a.min(b) {
+        if is_link(discs, pair) {
             links.push(ends);
         } else {
             unlinked.extend(ends);
@@ -158,36 +165,52 @@ fn links(discs: &[Disc], near: &[NearPair]) -> (Vec<[u32; 2]>, Vec<u32>) {
     (links, unlinked)
 }
 
-/// The diagram of discs of which some were cut out, the others found by their faces.
-fn together(faces: Faces, cut: CutOut, graph: &Embedding, links: &[[u32; 2]]) -> PowerDiagram {
-    let cells = &faces.cells;
-    let of_faces = |disc: u32| !cells[disc as usize].open;
-    let mut diagram = PowerDiagram {
-        cell_area: cells.iter().map(|cell| cell.area).collect(),
-        ..cut.diagram
-    };
-    for (disc, area) in cut.discs.iter().zip(&cut.areas) {
-        diagram.cell_area[*disc as usize] = *area;
-    }
-    // Whoever has the lowest number says what edges and triangles there are.
-    let mut edges = Vec::with_capacity(links.len() + diagram.edges.len());
-    for (k, &[first, second]) in links.iter().enumerate() {
-        if of_faces(first) {
-            let parts = graph.slots(k).map(|slot| faces.heights[slot as usize]);
-            edges.push(DualEdge {
-                first,
-                second,
-                parts: [parts[1], parts[0]],
-            });
+/// The edges of the near pairs: the disc with the lower number says what there is.
+fn near_edges(
+    near: &[NearPair],
+    faces: &Faces,
+    cut: &CutOut,
+    graph: &Embedding,
+    discs: &[Disc],
+) -> Vec<[f64; 2]> {
+    let mut links = 0..;
+    let parts = |pair: &NearPair| {
+        let link = is_link(discs, pair).then(|| links.next()).flatten();
+        if faces.cells[pair.first as usize].open {
+            return cut.parts(pair.first, pair.second);
         }
-    }
-    edges.append(&mut diagram.edges);
-    edges.extend(whole_diagonals(faces.diagonals).filter(|edge| of_faces(edge.first)));
-    edges.sort_by_key(|edge| (edge.first, edge.second));
-    diagram.edges = edges;
-    let own = faces.triangles.iter().filter(|t| of_faces(t[0]));
-    diagram.triangles.extend(own);
-    diagram
+        let [a, b] = [pair.first, pair.second].map(|disc| discs[disc as usize].centre);
+        let inverse = 1.0 / (b - a).length();
+        let slots = graph.slots(link.unwrap_or_default());
+        let [after, before] = slots.map(|slot| faces.doubled_areas[slot as usize]);
+        [before * inverse, after * inverse]
+    };
+    near.iter().map(parts).collect()
+}
+
+/// All edges by (first, second): of near pairs, across faces, and of the cells that were cut out.
+fn all_edges(
+    near: &[NearPair],
+    near_edges: &[[f64; 2]],
+    faces: &mut Faces,
+    cut: &mut CutOut,
+) -> Vec<DualEdge> {
+    let diagonals = whole_diagonals(std::mem::take(&mut faces.diagonals));
+    let of_faces = |first: u32| !faces.cells[first as usize].open;
+    let edge = |(pair, &parts): (&NearPair, &[f64; 2])| DualEdge {
+        first: pair.first,
+        second: pair.second,
+        parts,
+    };
+    let of_graph = near.iter().zip(near_edges).map(edge);
+    let mut edges = std::mem::take(&mut cut.diagram.edges);
+    edges.extend(
+        of_graph
+            .chain(diagonals)
+            .filter(|edge| of_faces(edge.first)),
+    );
+    edges.sort_unstable_by_key(|edge| (edge.first, edge.second));
+    edges
 }
 
 /// Puts both parts of each diagonal together.
@@ -213,13 +236,30 @@ fn not_turned_around([before, after]: [f64; 2]) -> [f64; 2] {
 }
 
 impl PowerDiagram {
+    /// Adds cells and triangles; the disc with the lowest number says what triangles there are.
+    fn add_cells(&mut self, mut faces: Faces, mut cut: CutOut) {
+        self.cell_area = faces.cells.iter().map(|cell| cell.area).collect();
+        for (disc, area) in cut.discs.iter().zip(&cut.areas) {
+            self.cell_area[*disc as usize] = *area;
+        }
+        let cells = &faces.cells;
+        faces
+            .triangles
+            .retain(|triangle| !cells[triangle[0] as usize].open);
+        faces.triangles.append(&mut cut.diagram.triangles);
+        self.triangles = faces.triangles;
+        self.outer_triangles = cut.diagram.outer_triangles;
+        self.side_edges = cut.diagram.side_edges;
+    }
+
     fn scale(&mut self, unit: f64) {
         for area in &mut self.cell_area {
             *area *= unit * unit;
         }
         let of_sides = self.side_edges.iter_mut().map(|edge| &mut edge.parts);
         let parts = self.edges.iter_mut().map(|edge| &mut edge.parts);
-        for part in parts.chain(of_sides).flatten() {
+        let of_near = self.near_edges.iter_mut();
+        for part in parts.chain(of_sides).chain(of_near).flatten() {
             *part *= unit;
         }
     }
@@ -495,6 +535,14 @@ fn collect_edges(disc: &Disc, cell: &Cell, diagram: &mut PowerDiagram) {
 }
 
 impl CutOut {
+    /// The parts of the edge of a disc that was cut out with one of a higher number.
+    fn parts(&self, first: u32, second: u32) -> [f64; 2] {
+        let key = |edge: &DualEdge| (edge.first, edge.second);
+        let edges = &self.diagram.edges;
+        let found = edges.binary_search_by_key(&(first, second), key);
+        found.map_or([0.0; 2], |k| edges[k].parts)
+    }
+
     fn add(&mut self, cell: CutCell) {
         self.discs.push(cell.disc);
         self.areas.push(cell.area);
