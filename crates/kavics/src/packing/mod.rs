@@ -5,16 +5,23 @@
 
 pub mod dropped;
 mod error;
+mod exchange;
+mod partners;
 pub mod random;
+mod relaxation;
 pub mod rows;
 pub mod sieve;
 mod skyline;
+mod soft_discs;
+mod spread;
 pub mod statistics;
+pub mod target;
 
 pub use dropped::{Dropped, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Stream};
 pub use sieve::{Mass, SieveCurve, Sizes};
+pub use target::target;
 
 /// Most grains that are placed: ids and memory end somewhere above.
 pub const MOST_GRAINS: usize = 1 << 28;
