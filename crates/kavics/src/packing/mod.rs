@@ -1,7 +1,7 @@
-//! Placing grains: radii after a sieve curve, dropping, regular rows.
+//! Placing grains: radii after a sieve curve, dropping, regular rows, a target packing fraction.
 //!
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
-//! The box stands on the floor y = 0 and reaches from x = 0 to its width.
+//! The box stands on the floor y = 0 and reaches from x = 0 to its width; a target is packed in any convex container.
 
 pub mod dropped;
 mod error;

@@ -30,12 +30,14 @@ const CORRECTIONS: usize = 8;
 
 /// Random grains of the given sizes in a convex container at a wanted packing fraction, without overlap.
 ///
-/// The packing fraction is π·Σ R² over the area of the whole container. As many grains are taken as come nearest to it,
-/// which is exact to half a grain, about φ/2N; so away from the sides it is higher, by about 0.2·φ·R̄·U/A (R̄ mean
-/// radius, U perimeter, A area), as grains pack less densely at a side. The radii are those of [`Sizes::radii`].
+/// The packing fraction is π·Σ R² over the area of the whole container, and as many grains are taken as come nearest to
+/// it: exact to half a grain. Grains pack less densely at a side, so away from the sides it is higher, about by the
+/// factor 1 + 0.2·R̄·U/A (R̄ mean radius `[length]`, U perimeter `[length]`, A area `[length²]`). The radii are those
+/// of [`Sizes::radii`].
 ///
-/// The grains are loose: gaps of near neighbours reach up to some 10⁻³ of the radius, so contacts are best those of
-/// all neighbours. Ids follow rows from the bottom before the relaxation. Same seed, same bits.
+/// The grains hardly touch: gaps of near neighbours are up to some 10⁻³ of the radii, so their contacts are best those
+/// of all neighbours. Ids follow rows from the bottom, as the grains lay before they were relaxed. The seed alone
+/// decides, not the number of threads.
 ///
 /// # Errors
 /// A packing fraction that is not between 0 and 1, sizes that are none, a largest grain that does not fit, and
