@@ -134,4 +134,26 @@ pub enum PackingError {
         /// Which row from the bottom, from 1.
         row: usize,
     },
+    /// A packing fraction that is not between 0 and 1.
+    #[error("packing fraction {fraction} is not between 0 and 1")]
+    PackingFraction {
+        /// The packing fraction.
+        fraction: f64,
+    },
+    /// The largest grain is wider than the container.
+    #[error("a grain of diameter {diameter} does not fit into the container")]
+    ContainerTooNarrow {
+        /// Diameter of the largest grain, `[length]`.
+        diameter: f64,
+    },
+    /// The wanted packing fraction was not reached.
+    #[error(
+        "packing fraction {wanted} was not reached without overlap; the nearest was {nearest:.6}"
+    )]
+    TargetMissed {
+        /// The wanted packing fraction.
+        wanted: f64,
+        /// The highest one reached with the same grains, all made smaller in proportion.
+        nearest: f64,
+    },
 }

@@ -1,20 +1,27 @@
-//! Placing grains: radii after a sieve curve, dropping, regular rows.
+//! Placing grains: radii after a sieve curve, dropping, regular rows, a target packing fraction.
 //!
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
-//! The box stands on the floor y = 0 and reaches from x = 0 to its width.
+//! The box stands on the floor y = 0 and reaches from x = 0 to its width; a target is packed in any convex container.
 
 pub mod dropped;
 mod error;
+mod exchange;
+mod partners;
 pub mod random;
+mod relaxation;
 pub mod rows;
 pub mod sieve;
 mod skyline;
+mod soft_discs;
+mod spread;
 pub mod statistics;
+pub mod target;
 
 pub use dropped::{Bed, Dropped, Shape, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Source, Stream};
 pub use sieve::{Mass, SieveCurve, Sizes};
+pub use target::target;
 
 /// Most grains that are placed: ids and memory end somewhere above.
 pub const MOST_GRAINS: usize = 1 << 28;
