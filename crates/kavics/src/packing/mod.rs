@@ -5,8 +5,11 @@
 
 pub mod dropped;
 mod error;
+mod filling;
 pub mod random;
+mod rolling;
 pub mod rows;
+mod sides;
 pub mod sieve;
 mod skyline;
 pub mod statistics;
