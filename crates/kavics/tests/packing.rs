@@ -225,16 +225,6 @@ fn the_packing_fraction_is_that_of_other_programs() {
 }
 
 #[test]
-fn the_lowest_of_ten_drops_packs_denser() {
-    let radii = uniform(0.5, 1.5).radii(5000, SEED).unwrap();
-    let once = drop(&Bed::empty_box(120.0), &radii, 1, SEED).unwrap();
-    let lowest = drop(&Bed::empty_box(120.0), &radii, 10, SEED).unwrap();
-    assert_stable(&lowest, 120.0);
-    let gain = interior_fraction(&lowest, 120.0, 6.0) - interior_fraction(&once, 120.0, 6.0);
-    assert!((0.01..0.03).contains(&gain), "{gain}");
-}
-
-#[test]
 fn the_placed_grains_keep_the_sieve_curve() {
     for mass in [Mass::Disc, Mass::Sphere] {
         let curve = graded(mass);
