@@ -6,10 +6,13 @@
 pub mod dropped;
 mod error;
 mod exchange;
+mod filling;
 mod partners;
 pub mod random;
 mod relaxation;
+mod rolling;
 pub mod rows;
+mod sides;
 pub mod sieve;
 mod skyline;
 mod soft_discs;
