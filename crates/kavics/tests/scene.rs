@@ -14,7 +14,7 @@ fn parse(text: &str) -> Scene {
 
 fn read(text: &str) -> Result<Scene, SceneError> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes_wrong");
-    Scene::parse(text, "scene.toml", &folder, &|_| {
+    Scene::parse(text, "scene.toml", &folder, &|_, _| {
         Err("no reader for this file".to_owned())
     })
 }
@@ -308,7 +308,7 @@ fn grains_may_come_from_a_reader_of_the_callers() {
         "listed]\nfile = \"Cargo.toml\"",
     );
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let grains = Scene::place_grains(&text, "scene.toml", folder, &|_| {
+    let grains = Scene::place_grains(&text, "scene.toml", folder, &|_, _| {
         Ok(vec![[1.0, 1.0, 1.0], [3.0, 1.0, 1.0]])
     });
     assert_eq!(grains.unwrap().len(), 2);
@@ -317,8 +317,15 @@ fn grains_may_come_from_a_reader_of_the_callers() {
 #[test]
 fn dropped_grains_are_placed_alone() {
     let text = "seed = 4\n[box]\nwidth = 20\nheight = \"fit\"\n[grains.dropped]\ncount = 50\nradius = { from = 0.5, to = 1.5 }\n";
-    let place =
-        || Scene::place_grains(text, "scene.toml", Path::new(""), &|_| Err(String::new())).unwrap();
+    let place = || {
+        Scene::place_grains(
+            text,
+            "scene.toml",
+            Path::new(""),
+            &|_, _| Err(String::new()),
+        )
+        .unwrap()
+    };
     assert_eq!(place().len(), 50);
     assert_eq!(place(), place());
 }

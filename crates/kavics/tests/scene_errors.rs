@@ -11,7 +11,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes_wrong")
 }
 
-fn no_reader(_: &Path) -> Result<Vec<[f64; 3]>, String> {
+fn no_reader(_: &Path, _: Option<usize>) -> Result<Vec<[f64; 3]>, String> {
     Err("lists of grains are read from csv here".to_owned())
 }
 

@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::ReadGrains;
-use super::check_grains::{DroppedPlan, GrainSource, GrainsPlan, SizesPlan};
+use super::check_grains::{DroppedPlan, GrainSource, GrainsPlan, ListedPlan, SizesPlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::named_file::named_file;
-use super::value::Placed;
 use crate::assembly::{self, Grain, Side};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerGrain, PerSide};
@@ -37,7 +36,7 @@ pub fn place(
     checker: &mut Checker,
 ) -> Option<PlacedGrains> {
     let grains = match &plan.source {
-        GrainSource::Listed(file) => listed(file, folder, grain_lists, checker)?,
+        GrainSource::Listed(plan) => listed(plan, folder, grain_lists, checker)?,
         _ => match packed(plan, seed) {
             Ok(grains) => grains,
             Err(error) => {
@@ -119,19 +118,20 @@ fn dropped(
 }
 
 fn listed(
-    file: &Placed<String>,
+    plan: &ListedPlan,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
     checker: &mut Checker,
 ) -> Option<PerGrain<Grain>> {
+    let ListedPlan { file, frame } = plan;
     let path = named_file(file, folder, "a list of grains", checker)?;
     let is_csv = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let rows = if is_csv {
-        super::grain_list::read_csv(&path)
-    } else {
-        grain_lists(&path)
+    let rows = match frame {
+        Some(_) if is_csv => Err("a csv file has no frames".to_owned()),
+        None if is_csv => super::grain_list::read_csv(&path),
+        frame => grain_lists(&path, frame.as_ref().map(|frame| frame.value)),
     };
     let rows = rows.and_then(|rows| super::grain_list::check(&rows).map(|()| rows));
     match rows {
@@ -145,10 +145,11 @@ fn listed(
             })
             .collect(),
         Err(what) => {
+            let span = frame.as_ref().map_or(&file.span, |frame| &frame.span);
             checker.push(Problem::at(
-                &file.span,
+                span,
                 format!("`{}`: {what}", file.value),
-                "expected a table with columns `x`, `y` and `radius`",
+                "expected a list of grains with `x`, `y` and `radius`",
             ));
             None
         }

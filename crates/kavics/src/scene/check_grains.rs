@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::check_dropped::{can_be_filled, dropped_plan};
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
-use super::file::{BoxFile, DroppedFile, GrainsFile, LatticeFile, SceneFile};
+use super::file::{BoxFile, DroppedFile, GrainsFile, LatticeFile, ListedFile, SceneFile};
 use super::unit::Dimension;
 use super::value::{ListOr, Placed};
 
@@ -34,7 +34,16 @@ pub enum GrainSource {
     /// Dropped.
     Dropped(DroppedPlan),
     /// From a file.
-    Listed(Placed<String>),
+    Listed(ListedPlan),
+}
+
+/// Grains from a file.
+#[derive(Clone, Debug)]
+pub struct ListedPlan {
+    /// Its name.
+    pub file: Placed<String>,
+    /// Its frame, from 0; none: the last.
+    pub frame: Option<Placed<usize>>,
 }
 
 /// Grains that are dropped.
@@ -167,7 +176,7 @@ fn source(
         Hexagonal(&'a LatticeFile),
         Square(&'a LatticeFile),
         Dropped(&'a Placed<DroppedFile>),
-        Listed(&'a Placed<String>),
+        Listed(&'a ListedFile),
     }
     let GrainsFile {
         hexagonal,
@@ -198,7 +207,7 @@ fn source(
             "listed",
             listed
                 .as_ref()
-                .map(|t| ((Table::Listed(&t.value.file), &t.span), &t.span)),
+                .map(|t| ((Table::Listed(&t.value), &t.span), &t.span)),
         ),
     ];
     let what = "the way grains are placed";
@@ -207,9 +216,23 @@ fn source(
         Table::Hexagonal(table) => hexagonal_rows(table, checker),
         Table::Square(table) => square_rows(table, checker),
         Table::Dropped(table) => dropped_plan(table, checker).map(GrainSource::Dropped),
-        Table::Listed(file) => Some(GrainSource::Listed(file.clone())),
+        Table::Listed(file) => listed_plan(file, checker).map(GrainSource::Listed),
     };
     Some((source?, span.clone()))
+}
+
+fn listed_plan(file: &ListedFile, checker: &mut Checker) -> Option<ListedPlan> {
+    let frame = match &file.frame {
+        None => None,
+        Some(frame) => Some(Placed {
+            value: checker.count(frame, "frame", 0)?,
+            span: frame.span.clone(),
+        }),
+    };
+    Some(ListedPlan {
+        file: file.file.clone(),
+        frame,
+    })
 }
 
 /// Row lengths, each with its place.

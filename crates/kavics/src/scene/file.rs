@@ -178,8 +178,10 @@ pub struct SieveFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ListedFile {
-    /// A csv or parquet file with columns x, y, radius.
+    /// A csv or parquet file with columns x, y, radius, an extended XYZ file or a dump of LAMMPS.
     pub file: Placed<String>,
+    /// Frame of a file that has several, from 0; the last when absent.
+    pub frame: Option<Placed<i64>>,
 }
 
 /// Freedoms of grains that never move.

@@ -69,8 +69,8 @@ pub struct Scene {
 
 /// Reads the file of a `listed` grain list that is not csv; the library itself knows no other format.
 ///
-/// Answers rows of (x, y, radius), or a sentence that says what is wrong with the file.
-pub type ReadGrains<'a> = dyn Fn(&Path) -> Result<Vec<[f64; 3]>, String> + 'a;
+/// The number is that of a frame, from 0, where the scene names one; otherwise the last frame is wanted. Answers rows of (x, y, radius), or a sentence that says what is wrong with the file.
+pub type ReadGrains<'a> = dyn Fn(&Path, Option<usize>) -> Result<Vec<[f64; 3]>, String> + 'a;
 
 impl Scene {
     /// Reads a scene file.
