@@ -3,6 +3,7 @@
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
 //! The box stands on the floor y = 0 and reaches from x = 0 to its width.
 
+mod advancing_front;
 pub mod dropped;
 mod error;
 pub mod random;
@@ -10,11 +11,14 @@ pub mod rows;
 pub mod sieve;
 mod skyline;
 pub mod statistics;
+mod target;
 
+pub use advancing_front::advancing_front;
 pub use dropped::{Bed, Dropped, Shape, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Source, Stream};
 pub use sieve::{Mass, SieveCurve, Sizes};
+pub use target::target;
 
 /// Most grains that are placed: ids and memory end somewhere above.
 pub const MOST_GRAINS: usize = 1 << 28;
