@@ -210,10 +210,18 @@ fn sandbox_dropped_says_why_it_ends() {
     assert!(run.last_step() >= 2);
 }
 
-/// Timed, not run, by hand.
+/// Timed by hand; here with few grains, where their number can be set.
 #[test]
-fn the_benchmark_is_a_right_scene() {
-    let mut command = Command::cargo_bin("kavics").expect("the command");
-    let scene = workspace().join("scenes/bench/hexagonal-100k.toml");
-    command.arg("check").arg(scene).assert().success();
+fn the_benchmarks_are_right_scenes() {
+    let few = "grains.dropped.count=2000";
+    for (name, arguments) in [
+        ("bench/hexagonal-100k.toml", vec![]),
+        ("bench/wide-1m.toml", vec!["--set", few]),
+        ("million.toml", vec!["--set", few]),
+    ] {
+        let mut command = Command::cargo_bin("kavics").expect("the command");
+        let scene = workspace().join("scenes").join(name);
+        let command = command.arg("check").arg(scene).args(arguments);
+        command.assert().success();
+    }
 }

@@ -17,6 +17,9 @@ use parquet::schema::types::ColumnPath;
 use crate::ResultsError;
 use crate::column::{Column, Read};
 
+/// Rows that are encoded together: few enough that long tables need little memory beside their file.
+const ROWS_A_GROUP: usize = 1 << 16;
+
 /// The rows as a Parquet file: the same bytes for the same rows.
 pub(crate) fn encode<R>(
     path: &Path,
@@ -24,13 +27,16 @@ pub(crate) fn encode<R>(
     rows: &[R],
 ) -> Result<Vec<u8>, ResultsError> {
     let fields: Vec<Field> = columns.iter().map(field).collect();
-    let arrays = columns.iter().map(|column| array(column, rows)).collect();
     let schema = Arc::new(Schema::new(fields));
-    let batch =
-        RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(ResultsError::table(path))?;
-    let mut writer = ArrowWriter::try_new(Vec::new(), schema, Some(properties(columns)))
-        .map_err(ResultsError::table(path))?;
-    writer.write(&batch).map_err(ResultsError::table(path))?;
+    let mut writer =
+        ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties(columns)))
+            .map_err(ResultsError::table(path))?;
+    for some in rows.chunks(ROWS_A_GROUP) {
+        let arrays = columns.iter().map(|column| array(column, some)).collect();
+        let batch =
+            RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(ResultsError::table(path))?;
+        writer.write(&batch).map_err(ResultsError::table(path))?;
+    }
     writer.into_inner().map_err(ResultsError::table(path))
 }
 
@@ -56,7 +62,8 @@ fn array<R>(column: &Column<R>, rows: &[R]) -> ArrayRef {
 fn properties<R>(columns: &[Column<R>]) -> WriterProperties {
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
-        .set_dictionary_enabled(false);
+        .set_dictionary_enabled(false)
+        .set_max_row_group_row_count(Some(ROWS_A_GROUP));
     for column in columns {
         if matches!(column.read, Read::Text(_)) {
             let path = ColumnPath::from(column.name.as_str());
