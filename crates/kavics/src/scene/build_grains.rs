@@ -236,12 +236,15 @@ fn listed(
     let mut list = match list.and_then(|list| super::grain_list::check(&list).map(|()| list)) {
         Ok(list) => list,
         Err(what) => {
-            let span = frame.as_ref().map_or(&file.span, |frame| &frame.span);
-            checker.push(Problem::at(
-                span,
-                format!("`{}`: {what}", file.value),
-                "expected a list of grains with `x`, `y` and `radius`",
-            ));
+            let (span, expected) = match frame {
+                None => (
+                    &file.span,
+                    "expected a list of grains with `x`, `y` and `radius`",
+                ),
+                Some(frame) => (&frame.span, "expected a frame of the file, or no `frame`"),
+            };
+            let message = format!("`{}`: {what}", file.value);
+            checker.push(Problem::at(span, message, expected));
             return None;
         }
     };

@@ -165,9 +165,10 @@ impl Fill<'_> {
         if number * tries as f64 <= most as f64 {
             return Some(());
         }
-        let (each, unit) = match self {
-            Self::Dropped(_) => (format!(" of {tries} drops each"), "drops"),
-            _ => (String::new(), "grains"),
+        let (each, unit, or_count) = match self {
+            Self::Dropped(_) => (format!(" of {tries} drops each"), "drops", " or a `count`"),
+            Self::Front(_) => (String::new(), "grains", " or a `count`"),
+            Self::Target(_) => (String::new(), "grains", ""),
         };
         checker.push(
             Problem::at(
@@ -175,7 +176,7 @@ impl Fill<'_> {
                 format!("about {} grains{each} would fill the box", short(number)),
                 format!("expected at most {most} {unit}"),
             )
-            .help("give larger grains, a smaller box or a `count`"),
+            .help(format!("give larger grains, a smaller box{or_count}")),
         );
         None
     }

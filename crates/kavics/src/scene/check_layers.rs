@@ -141,7 +141,7 @@ fn top(
                 Problem::at(
                     height_span,
                     "a box that is filled with grains needs a height",
-                    "expected a length",
+                    "expected a length, or `top` for the last layer",
                 )
                 .and(span, "grains are placed until the box is full"),
             );
