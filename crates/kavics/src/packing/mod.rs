@@ -6,8 +6,11 @@
 mod advancing_front;
 pub mod dropped;
 mod error;
+mod filling;
 pub mod random;
+mod rolling;
 pub mod rows;
+mod sides;
 pub mod sieve;
 mod skyline;
 pub mod statistics;

@@ -19,6 +19,7 @@ pub(super) struct Resting {
 /// Grains of radii up to `largest`, by columns of equal width.
 struct Level {
     largest: f64,
+    left: f64,
     column_width: f64,
     /// Highest centre of each column, kept apart so that most columns are dismissed from here.
     highest: Vec<f64>,
@@ -38,13 +39,13 @@ const LEVEL_RATIO: f64 = 4.0;
 const COLUMN_WIDTH: f64 = 1.75;
 
 impl Skyline {
-    /// An empty box of the given `width` for `count` grains with radii from `smallest` to `largest`.
-    pub(super) fn new(width: f64, smallest: f64, largest: f64, count: usize) -> Self {
+    /// An empty container between two abscissas, for `count` grains with radii from `smallest` to `largest`.
+    pub(super) fn new(extent: [f64; 2], smallest: f64, largest: f64, count: usize) -> Self {
         let sizes = std::iter::successors(Some(largest), |size| Some(size / LEVEL_RATIO));
         Self {
             levels: sizes
                 .take_while(|&size| size >= smallest)
-                .map(|size| Level::new(width, size, count))
+                .map(|size| Level::new(extent, size, count))
                 .collect(),
             count: 0,
         }
@@ -79,12 +80,14 @@ impl Skyline {
 }
 
 impl Level {
-    fn new(width: f64, largest: f64, count: usize) -> Self {
+    fn new([left, right]: [f64; 2], largest: f64, count: usize) -> Self {
+        let width = right - left;
         // A box that is wide beside its grains needs no more columns than grains.
         let most = 4.0 * count as f64 + 16.0;
         let columns = (width / (COLUMN_WIDTH * largest)).ceil().clamp(1.0, most);
         Self {
             largest,
+            left,
             column_width: width / columns,
             highest: vec![f64::NEG_INFINITY; columns as usize],
             columns: vec![Vec::new(); columns as usize],
@@ -93,7 +96,7 @@ impl Level {
 
     fn column(&self, x: f64) -> usize {
         // The cast saturates.
-        ((x / self.column_width) as usize).min(self.columns.len() - 1)
+        (((x - self.left) / self.column_width) as usize).min(self.columns.len() - 1)
     }
 
     fn push(&mut self, grain: Grain, id: GrainId) {
@@ -133,7 +136,7 @@ impl Level {
 
     /// Distance of a column from an interval of abscissas.
     fn gap(&self, column: usize, [from, to]: [f64; 2]) -> f64 {
-        let left = column as f64 * self.column_width;
+        let left = self.left + column as f64 * self.column_width;
         (left - to).max(from - (left + self.column_width)).max(0.0)
     }
 }

@@ -12,7 +12,7 @@ use crate::packing::Sizes;
 
 /// More drops than anybody waits for.
 const MOST_DROPS: usize = 10_000_000;
-/// The same where the number of grains is sought by filling the box some twenty times.
+/// The same where the number of grains is sought by filling the box several times.
 const MOST_DROPS_OF_A_FILL: usize = 1_000_000;
 /// More drops a grain than make a difference.
 const MOST_TRIES: i64 = 10_000;
