@@ -228,6 +228,19 @@ fn a_hexagon_under_pressure_has_that_stress_in_every_direction() {
 }
 
 #[test]
+fn a_hopper_carries_the_weight_of_its_grains() {
+    let run = done("hopper.toml");
+    let last = Tables::read(&run, 2);
+    let weight: f64 = last.grains.iter().map(|g| g.force.1).sum();
+    let walls: f64 = last.sides.iter().map(|side| side.0.1).sum();
+    assert!(last.sides[1].0.1 > 0.0 && last.sides[3].0.1 > 0.0);
+    assert!(
+        weight < -50.0 && (walls + weight).abs() < 1e-9 * walls,
+        "{walls} {weight}"
+    );
+}
+
+#[test]
 fn layers_keep_their_sizes_and_carry_the_lid() {
     let run = done("layers.toml");
     let grains = run.table("grains", 0).expect("grains");

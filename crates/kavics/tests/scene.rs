@@ -344,7 +344,18 @@ fn without_friction_a_scene_warns() {
 fn the_schema_names_every_table() {
     let schema = kavics::scene::schema();
     for table in [
-        "box", "grains", "contact", "zone", "support", "move", "load", "stage",
+        "box",
+        "polygon",
+        "grains",
+        "layer",
+        "advancing-front",
+        "target",
+        "contact",
+        "zone",
+        "support",
+        "move",
+        "load",
+        "stage",
     ] {
         assert!(schema.contains(&format!("\"{table}\"")), "{table}");
     }

@@ -122,6 +122,21 @@ impl<'a> Filling<'a> {
             return None;
         }
         let placed = self.packed(plan);
+        if let (
+            Ok(placed),
+            GrainSource::Dropped(DroppedPlan {
+                count: Some(count), ..
+            }),
+        ) = (&placed, &plan.source)
+            && placed.len() < *count
+        {
+            checker.push(Problem::at(
+                &plan.span,
+                format!("only {} of {count} grains fit into the box", placed.len()),
+                "expected fewer or smaller grains, or a larger box",
+            ));
+            return None;
+        }
         placed
             .map_err(|error| {
                 checker.push(
