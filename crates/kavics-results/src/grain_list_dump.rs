@@ -150,10 +150,9 @@ impl Columns {
             format!("line {line}: no {what} among {}", quoted.join(", "))
         };
         let coordinate = |axis: usize, what: &str| -> Result<Coordinate, String> {
-            let known = COORDINATES[axis].iter();
-            let found = known
-                .filter_map(|(name, scaled)| Some((place(name)?, *name, *scaled)))
-                .next();
+            let found = COORDINATES[axis]
+                .iter()
+                .find_map(|(name, scaled)| Some((place(name)?, *name, *scaled)));
             let (place, name, scaled) = found.ok_or_else(|| missing(what))?;
             let bounds = if scaled {
                 Some(frame.bounds(axis)?)

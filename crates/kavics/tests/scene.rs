@@ -439,9 +439,8 @@ fn hexagon(clockwise: bool) -> String {
 #[test]
 fn a_polygon_has_its_sides_in_either_sense() {
     for clockwise in [false, true] {
-        let sides: String = (0..6)
-            .map(|k| format!("[side.{k}]\ncontact = \"a\"\n"))
-            .collect();
+        let side = |k: usize| format!("[side.{k}]\ncontact = \"a\"\n");
+        let sides = (0..6).map(side).collect::<Vec<_>>().concat();
         let scene = parse(&format!("{}{sides}", hexagon(clockwise)));
         let contacts = scene.assembly.contacts.values();
         assert_eq!(contacts.iter().filter(|c| !c.touches_side()).count(), 12);
@@ -501,7 +500,7 @@ fn a_strain_of_a_polygon_is_about_the_middle_of_its_extents() {
     }
 }
 
-const LAYERS: &str = r#"
+const LAYERS: &str = r"
 seed = 5
 [box]
 width = 12.0
@@ -516,7 +515,7 @@ radius = { from = 0.4, to = 0.6 }
 hexagonal = { radius = 0.5, rows = [8, 7] }
 [[layer]]
 dropped = { radius = 0.3 }
-"#;
+";
 
 /// Layers keep their order, stand above each other, and end below their tops.
 #[test]
