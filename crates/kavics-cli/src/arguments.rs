@@ -63,7 +63,7 @@ pub struct CheckArguments {
 pub struct PackArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write x, y and radius to this file (csv or parquet, by the ending); without it csv to stdout
+    /// Write x, y and radius to this file (csv, parquet, extended XYZ or a LAMMPS dump, by the ending); without it csv to stdout
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Number of threads; all processors when absent
@@ -99,7 +99,7 @@ pub struct MeasureArguments {
     /// Window, as in the scene: all, undisturbed, "{ x = [0, 5], y = [0, 5] }" or "{ ids = [3, 4] }"
     #[arg(long)]
     pub window: Option<String>,
-    /// Write the table of load steps to this file (csv or parquet, by the ending); without it csv to stdout
+    /// Write the table of load steps to this file (csv, parquet, extended XYZ or a LAMMPS dump, by the ending); without it csv to stdout
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }

@@ -53,7 +53,7 @@ fn measured_rows(folder: &ResultsFolder, scene: &Scene) -> Result<Vec<StepRow>, 
 
 /// The scene of the results. What it read from other files is read from the folder.
 fn scene_of(folder: &ResultsFolder, window: Option<&str>) -> Result<Scene, Failure> {
-    let text = in_window(&own_files::named(&folder.scene()?), window)?;
+    let text = in_window(&own_files::named(&folder.scene()?, &[]), window)?;
     let name = folder.path().join("scene.toml");
     Scene::parse(&text, &name.to_string_lossy(), folder.path(), &read_grains)
         .map_err(Failure::Scene)

@@ -21,7 +21,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let threads = scene_file::start_threads(arguments.threads)?;
     let (mut scene, table) = scene_file::read(&arguments.scene)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
-    scene.text = own_files::named(&scene.text);
+    scene.text = own_files::named(&scene.text, &scene.layers);
     let options = Options {
         threads,
         replace: arguments.force,

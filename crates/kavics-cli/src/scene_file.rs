@@ -39,7 +39,9 @@ pub fn place_grains(arguments: &SceneArguments) -> Result<PerGrain<Grain>, Failu
 /// The files that a run of the scene reads: the scene itself, and those it names.
 pub fn files_read(arguments: &SceneArguments, scene: &Scene) -> Vec<PathBuf> {
     let folder = arguments.scene.parent().unwrap_or(Path::new(""));
-    let listed = own_files::listed(&scene.text).map(|file| folder.join(file));
+    let listed = own_files::listed(&scene.text)
+        .into_iter()
+        .map(|file| folder.join(file));
     let mut files = vec![arguments.scene.clone()];
     files.extend(listed);
     files.extend(scene.compare.clone());

@@ -443,7 +443,7 @@ fn a_list_with_another_ending_is_refused() {
     let output = kavics(place.path(), &["check", "block.toml"]);
     assert_eq!(status(&output), 2);
     let message = text(&output.stderr);
-    assert!(message.contains("ends in .csv or .parquet"), "{message}");
+    assert!(message.contains("ends in .csv, .parquet"), "{message}");
 }
 
 #[test]

@@ -210,6 +210,89 @@ fn sandbox_dropped_says_why_it_ends() {
     assert!(run.last_step() >= 2);
 }
 
+/// By the divergence theorem the mean stress of the whole container is the pressure on its sides.
+#[test]
+fn a_hexagon_under_pressure_has_that_stress_in_every_direction() {
+    let run = done("polygon.toml");
+    let factors = run.steps("load_factor");
+    let tensor = ["stress_xx", "stress_yy", "stress_xy", "stress_yx"].map(|c| run.steps(c));
+    for (step, factor) in factors.iter().enumerate() {
+        // The plates still hold a millionth sideways.
+        assert!((tensor[0][step] + factor).abs() < 1e-8 * factor);
+        assert!((tensor[1][step] + factor).abs() < 1e-8 * factor);
+        assert!(tensor[2][step].abs() + tensor[3][step].abs() < 1e-12);
+    }
+    let last = Tables::read(&run, run.last_step());
+    assert_eq!(last.sides.len(), 6);
+    assert!((last.sides[0].0.1 - 2.0 * 3.577_350_269_189_626).abs() < 1e-9);
+}
+
+#[test]
+fn a_hopper_carries_the_weight_of_its_grains() {
+    let run = done("hopper.toml");
+    let last = Tables::read(&run, 2);
+    let weight: f64 = last.grains.iter().map(|g| g.force.1).sum();
+    let walls: f64 = last.sides.iter().map(|side| side.0.1).sum();
+    assert!(last.sides[1].0.1 > 0.0 && last.sides[3].0.1 > 0.0);
+    assert!(
+        weight < -50.0 && (walls + weight).abs() < 1e-9 * walls,
+        "{walls} {weight}"
+    );
+}
+
+#[test]
+fn layers_keep_their_sizes_and_carry_the_lid() {
+    let run = done("layers.toml");
+    let grains = run.table("grains", 0).expect("grains");
+    let radii = grains.numbers("radius").expect("radii");
+    assert!(radii[..60].iter().all(|radius| *radius >= 0.8));
+    assert!(radii[60..].iter().all(|radius| *radius <= 0.5));
+    let (lid, floor) = (side_force(&run, TOP, |f| f.1), side_force(&run, 2, |f| f.1));
+    assert!(lid[4] < 0.0 && floor[4] > 0.0);
+}
+
+/// What a results folder holds places the same grains again: rows of a list stand for a listed layer.
+#[test]
+fn a_listed_layer_is_found_again_in_the_results() {
+    let place = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| place.path().join(name);
+    let kavics = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("kavics").expect("the command");
+        let output = command.current_dir(place.path()).args(arguments).output();
+        let output = output.expect("a run");
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 4\n0 4\n0 1\n\
+                ITEM: ATOMS id x y radius\n2 3 3 1\n1 1 3 1\n";
+    std::fs::write(at("upper.dump"), dump).expect("a list");
+    let scene = "[box]\nwidth = 4\nheight = \"fit\"\n[[layer]]\nsquare = { radius = 1, rows = [2] }\n\
+                 [[layer]]\n[layer.listed]\nfile = \"upper.dump\"\n\
+                 [contact.a.cemented]\nstiffness.layer = { normal = 1, shear = 1 }\n\
+                 [side.bottom]\ncontact = \"a\"\n[[load]]\nname = \"press\"\nedge = \"top\"\nnormal = [-1, -1]\n\
+                 [[stage]]\nfactors = [1]\n[measure]\nwindow = \"all\"\n";
+    std::fs::write(at("scene.toml"), scene).expect("a scene");
+    kavics(&["run", "scene.toml"]);
+    std::fs::remove_file(at("upper.dump")).expect("it is there");
+    let text = std::fs::read_to_string(at("scene.results/scene.toml")).expect("the scene");
+    assert!(text.contains("rows = [2, 3]"), "{text}");
+    let steps = std::fs::read(at("scene.results/steps.parquet")).expect("steps");
+    let measured = kavics(&["measure", "scene.results"]);
+    assert!(
+        steps.len() > 1000 && measured.lines().count() == 2,
+        "{measured}"
+    );
+    let packed = kavics(&["pack", "scene.results/scene.toml"]);
+    assert_eq!(
+        packed,
+        "x,y,radius\n1.0,1.0,1.0\n3.0,1.0,1.0\n1.0,3.0,1.0\n3.0,3.0,1.0\n"
+    );
+}
+
 /// Timed by hand; here with few grains, where their number can be set.
 #[test]
 fn the_benchmarks_are_right_scenes() {

@@ -94,6 +94,7 @@ impl Format {
         } else {
             Err(ResultsError::UnknownEnding {
                 path: path.to_owned(),
+                expected: ".csv or .parquet",
             })
         }
     }

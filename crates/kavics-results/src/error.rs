@@ -105,10 +105,12 @@ pub enum ResultsError {
         path: PathBuf,
     },
     /// A file has an ending that no format belongs to.
-    #[error("{}: expected a file that ends in .csv or .parquet", path.display())]
+    #[error("{}: expected a file that ends in {expected}", path.display())]
     UnknownEnding {
         /// The file.
         path: PathBuf,
+        /// The endings that are known.
+        expected: &'static str,
     },
 }
 

@@ -181,7 +181,7 @@ fn grains_read_back_as_the_same_bits() {
     let scene = block::scene(7, 5);
     let path = place.path().join("pack.parquet");
     write_grains(&path, scene.assembly.grains.values()).unwrap();
-    let read = read_grains(&path).unwrap();
+    let read = read_grains(&path, None).unwrap();
     let grain = scene.assembly.grains[GrainId(31)];
     assert_eq!(read[31], [grain.centre.x, grain.centre.y, grain.radius]);
 }
@@ -191,12 +191,12 @@ fn a_grain_list_without_radii_is_named() {
     let place = place();
     let path = place.path().join("pack.parquet");
     write_steps(&path, &[]).unwrap();
-    let message = read_grains(&path).unwrap_err();
+    let message = read_grains(&path, None).unwrap_err();
     assert!(message.ends_with("no column is called \"x\""), "{message}");
 }
 
 #[test]
-fn only_csv_and_parquet_are_written() {
+fn only_lists_of_known_endings_are_written() {
     let place = place();
     let path = place.path().join("pack.xlsx");
     assert!(matches!(

@@ -44,7 +44,7 @@ id! {
     ContactId
 }
 id! {
-    /// A side of the container; left, right, bottom, top of the box are 0, 1, 2, 3.
+    /// A side of the container; left, right, bottom, top of a box are 0, 1, 2, 3.
     SideId
 }
 id! {

@@ -29,7 +29,7 @@
 //! [measure]
 //! window = "all"
 //! "#;
-//! let lists = |_: &Path| Err("no grain lists here".to_owned());
+//! let lists = |_: &Path, _: Option<usize>| Err("no grain lists here".to_owned());
 //! let scene = Scene::parse(text, "press.toml", Path::new("."), &lists)?;
 //! for equilibrium in scene.load_path() {
 //!     let equilibrium = equilibrium?;

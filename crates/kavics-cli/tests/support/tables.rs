@@ -210,8 +210,11 @@ fn contacts(table: &Reader) -> Vec<ContactRow> {
 fn sides(table: &Reader) -> Vec<(Vector, f64, Vector, f64)> {
     let (force, translation) = (table.vectors("fx", "fy"), table.vectors("ux", "uy"));
     let (moment, rotation) = (table.numbers("moment"), table.numbers("rotation"));
-    let mut all = vec![Default::default(); 4];
-    for (i, side) in table.numbers("side").into_iter().enumerate() {
+    let sides = table.numbers("side");
+    // Four of a box, present or not.
+    let count = sides.iter().fold(3.0, |a: f64, b| a.max(*b)) as usize + 1;
+    let mut all = vec![Default::default(); count];
+    for (i, side) in sides.into_iter().enumerate() {
         all[side as usize] = (force[i], moment[i], translation[i], rotation[i]);
     }
     all

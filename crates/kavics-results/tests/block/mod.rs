@@ -43,6 +43,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
     Scene {
         title: "Block of discs, pressed from above".to_owned(),
         seed: 1,
+        layers: vec![grains.len()],
         assembly: Assembly {
             grains: grains.into(),
             sides: sides(rows, long).into(),

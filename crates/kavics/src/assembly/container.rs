@@ -1,4 +1,4 @@
-//! The rectangular box, and grains that do not fit: into it, or beside each other.
+//! The sides of a container, and grains that do not fit: into it, or beside each other.
 
 use crate::assembly::{Grain, Side};
 use crate::geometry::{Grid, Vector};
@@ -22,6 +22,60 @@ pub fn box_sides(width: f64, height: f64, present: [bool; 4]) -> PerSide<Side> {
         present,
     };
     sides.into_iter().zip(present).map(side).collect()
+}
+
+/// The sides of the convex polygon with these corners, `[length]`: side k runs from corner k to the next one.
+///
+/// The corners may go round in either sense; names are the numbers of the sides.
+pub fn polygon_sides(corners: &[Vector], present: &[bool]) -> PerSide<Side> {
+    let inside_left = twice_area(corners) > 0.0;
+    let next = corners.iter().cycle().skip(1);
+    let ends = corners.iter().zip(next).zip(present).enumerate();
+    let side = |(number, ((&start, &end), &present)): (usize, ((&Vector, &Vector), &bool))| {
+        let (along, length) = (end - start, (end - start).length());
+        let left = along.quarter_turn();
+        let outward = if inside_left { -left } else { left };
+        Side {
+            name: number.to_string(),
+            start,
+            end,
+            outward: Vector::new(outward.x / length, outward.y / length),
+            present,
+        }
+    };
+    ends.map(side).collect()
+}
+
+/// Twice the area of a polygon, positive where its corners go round counter-clockwise, `[length²]`.
+pub fn twice_area(corners: &[Vector]) -> f64 {
+    let Some(&origin) = corners.first() else {
+        return 0.0;
+    };
+    let next = corners.iter().cycle().skip(1);
+    let pairs = corners.iter().zip(next);
+    pairs.map(|(&a, &b)| (a - origin).cross(b - origin)).sum()
+}
+
+/// The middle of the extents of a container, `[length]`.
+pub fn middle(sides: &PerSide<Side>) -> Vector {
+    let [low, high] = extents(
+        sides
+            .values()
+            .iter()
+            .flat_map(|side| [side.start, side.end]),
+    );
+    (low + high) * 0.5
+}
+
+/// Lowest and highest coordinates of some points, `[length]`.
+pub fn extents(points: impl IntoIterator<Item = Vector>) -> [Vector; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY].map(|v| Vector::new(v, v));
+    points.into_iter().fold(none, |[low, high], p| {
+        [
+            Vector::new(low.x.min(p.x), low.y.min(p.y)),
+            Vector::new(high.x.max(p.x), high.y.max(p.y)),
+        ]
+    })
 }
 
 /// Pairs of grains that overlap by more than `tolerance`, and by how much, deepest first, `[length]`.
@@ -78,6 +132,26 @@ mod tests {
         assert_eq!(distances, [2.0, 2.0, 1.5, 1.5]);
         assert_eq!(sides[SideId(3)].length(), 4.0);
         assert!(!sides[SideId(1)].present);
+    }
+
+    #[test]
+    fn a_polygon_has_the_same_sides_whichever_way_it_goes_round() {
+        let corners = [(1.0, 1.0), (5.0, 1.0), (1.0, 4.0)].map(|(x, y)| Vector::new(x, y));
+        let sides = polygon_sides(&corners, &[true, false, true]);
+        let point = Vector::new(2.0, 2.0);
+        let distances = |sides: &PerSide<Side>| -> Vec<f64> {
+            sides.values().iter().map(|s| s.distance(point)).collect()
+        };
+        // The long side is 3x + 4y = 19: distance (19 − 14)/5.
+        assert_eq!(distances(&sides), [1.0, 1.0, 1.0]);
+        assert_eq!(sides[SideId(1)].name, "1");
+        assert!(sides[SideId(2)].present && !sides[SideId(1)].present);
+        assert_eq!(middle(&sides), Vector::new(3.0, 2.5));
+        let back = [corners[0], corners[2], corners[1]];
+        assert_eq!(
+            distances(&polygon_sides(&back, &[true; 3])),
+            [1.0, 1.0, 1.0]
+        );
     }
 
     #[test]

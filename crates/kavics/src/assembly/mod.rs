@@ -10,7 +10,7 @@ mod outer_face;
 pub use contact_graph::{
     Between, ContactGraph, ContactPoint, DualLength, Shaping, Site, contact_graph,
 };
-pub use container::{box_sides, outside, overlaps};
+pub use container::{box_sides, extents, middle, outside, overlaps, polygon_sides, twice_area};
 pub use envelope::{EnvelopePart, envelope};
 pub use outer_face::outer_grains;
 
@@ -37,10 +37,10 @@ pub enum Partner {
 
 /// A straight side of the container: a rigid body where grains touch it.
 ///
-/// The sides of a box run left to right and bottom to top.
+/// The sides of a box run left to right and bottom to top, those of a polygon from corner to corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
-    /// `left`, `right`, `bottom`, `top`.
+    /// `left`, `right`, `bottom`, `top`; of a polygon the number of the side.
     pub name: String,
     /// Where the side starts, `[length]`.
     pub start: Vector,
@@ -119,7 +119,7 @@ impl Contact {
 pub struct Assembly {
     /// The grains.
     pub grains: PerGrain<Grain>,
-    /// The sides of the container, in the order left, right, bottom, top.
+    /// The sides of the container: left, right, bottom, top of a box, or those of a polygon in their order.
     pub sides: PerSide<Side>,
     /// The contacts: between grains by (first, second), then those with sides by (first, second).
     pub contacts: PerContact<Contact>,

@@ -3,6 +3,7 @@
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
 //! The box stands on the floor y = 0 and reaches from x = 0 to its width; a target is packed in any convex container.
 
+mod advancing_front;
 pub mod dropped;
 mod error;
 mod exchange;
@@ -20,6 +21,7 @@ mod spread;
 pub mod statistics;
 pub mod target;
 
+pub use advancing_front::advancing_front;
 pub use dropped::{Bed, Dropped, Shape, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Source, Stream};

@@ -6,7 +6,7 @@ use super::build_contacts;
 use super::build_grains::{self, PlacedGrains};
 use super::build_loading::Loading;
 use super::check_contacts::{self, ContactsPlan};
-use super::check_grains::{self, GrainsPlan};
+use super::check_layers::{self, GrainsPlan};
 use super::check_loading;
 use super::check_run::{self, RunPlan, WindowPlan};
 use super::check_stages;
@@ -42,7 +42,7 @@ pub fn scene(
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
 ) -> Result<Scene, Checker> {
-    let mut checker = Checker::default();
+    let mut checker = Checker::of(file);
     let plan = plan(file, folder, &mut checker);
     let built = match plan {
         Some(plan) if checker.problems.is_empty() => build(plan, folder, grain_lists, &mut checker),
@@ -65,10 +65,10 @@ pub fn grains(
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
 ) -> Result<PlacedGrains, Checker> {
-    let mut checker = Checker::default();
+    let mut checker = Checker::of(file);
     let seed = seed(file, &mut checker);
     let tolerance = check_contacts::touching_tolerance(file, &mut checker);
-    let plan = check_grains::grains(file, &mut checker);
+    let plan = check_layers::grains(file, &mut checker);
     let placed = match (plan, seed, tolerance) {
         (Some(plan), Some(seed), Some(tolerance)) if checker.problems.is_empty() => {
             build_grains::place(&plan, seed, tolerance, folder, grain_lists, &mut checker)
@@ -98,7 +98,7 @@ fn plan(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Plan> 
     let (length, positive) = (Dimension::Length, Bound::Positive);
     let thickness = file.thickness.as_ref();
     let thickness = checker.number_or(1.0, thickness, "thickness", length, positive);
-    let grains = check_grains::grains(file, checker);
+    let grains = check_layers::grains(file, checker);
     let contacts = check_contacts::contacts(file, checker);
     let loading = check_loading::loading(file, checker);
     let run = check_run::run(file, folder, checker);
@@ -134,6 +134,7 @@ fn build(
         checker,
     )?;
     let tolerance = touching * placed.mean_radius;
+    let layers = placed.layers.clone();
     let assembly =
         build_contacts::assembly(&plan.contacts, placed, plan.thickness, plan.seed, checker)?;
     let loading = Loading {
@@ -146,7 +147,7 @@ fn build(
     let window = window(&plan.run.window, &assembly, &program, checker);
     if checker.problems.is_empty() {
         let support = plan.loading.supports.first().map(|s| s.span.clone());
-        let side = plan.contacts.sides.iter().flatten().next();
+        let side = plan.contacts.sides.values().iter().flatten().next();
         let place = support.or(side.map(|s| s.span.clone())).unwrap_or(place);
         rigid_motion::check(&assembly, &program, &place, checker);
     }
@@ -155,6 +156,7 @@ fn build(
     Some(Scene {
         title: String::new(),
         seed: plan.seed,
+        layers,
         properties: plan.contacts.properties.map(property),
         assembly,
         program,

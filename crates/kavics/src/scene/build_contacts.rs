@@ -4,10 +4,11 @@ use super::build_grains::PlacedGrains;
 use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
+use super::sides::side_called;
 use crate::assembly::{self, Assembly, Contact, ContactGraph, Partner, Side, Site};
 use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
 use crate::geometry::Vector;
-use crate::ids::{Id, PerContact, PerSide, PropertyId};
+use crate::ids::{PerContact, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
 
 /// The assembly: grains, sides, contacts and dual graph.
@@ -18,16 +19,12 @@ pub fn assembly(
     seed: u64,
     checker: &mut Checker,
 ) -> Option<Assembly> {
-    let present = [0, 1, 2, 3].map(|i: usize| plan.sides[i].is_some());
-    let sides = assembly::box_sides(placed.width, placed.height, present);
-    let reach: PerSide<f64> = plan
-        .sides
-        .iter()
-        .map(|side| {
-            side.as_ref()
-                .map_or(0.0, |side| side.reach * placed.mean_radius)
-        })
-        .collect();
+    let present = plan.sides.map(Option::is_some);
+    let sides = placed.sides(present.values());
+    let reach: PerSide<f64> = plan.sides.map(|side| {
+        side.as_ref()
+            .map_or(0.0, |side| side.reach * placed.mean_radius)
+    });
     let tolerance = plan.touching_tolerance * placed.mean_radius;
     let graph = assembly::contact_graph(&placed.grains, &sides, plan.between, &reach, tolerance);
     sides_touch(plan, &graph, &placed, &sides, checker);
@@ -56,7 +53,7 @@ fn sides_touch(
     checker: &mut Checker,
 ) {
     for (id, side) in sides.iter() {
-        let Some(side_plan) = &plan.sides[id.index()] else {
+        let Some(side_plan) = &plan.sides[id] else {
             continue;
         };
         let joined = graph
@@ -80,7 +77,7 @@ fn sides_touch(
             Some(span) if side_plan.reach > 0.0 => checker.push(
                 Problem::at(
                     span,
-                    format!("the {} side reaches no grain", side.name),
+                    format!("{} reaches no grain", side_called(&side.name)),
                     format!(
                         "expected at least {nearest}, the gap to the nearest grain in mean radii"
                     ),
@@ -88,8 +85,8 @@ fn sides_touch(
                 .and(&side_plan.span, "this side"),
             ),
             _ => checker.warn(format!(
-                "no grain touches the {} side; the nearest is {nearest} mean radii away",
-                side.name
+                "no grain touches {}; the nearest is {nearest} mean radii away",
+                side_called(&side.name)
             )),
         }
     }
@@ -111,9 +108,9 @@ fn warn_of_grains_behind(
     let within = gaps.filter(|gap| *gap <= reach).count();
     if within > joined {
         checker.warn(format!(
-            "{} grains within reach of the {} side are not joined to it: others lie between",
+            "{} grains within reach of {} are not joined to it: others lie between",
             within - joined,
-            side.name
+            side_called(&side.name)
         ));
     }
 }
@@ -144,7 +141,7 @@ fn zoned(
     }
     for (property, site) in properties.iter_mut().zip(&graph.sites) {
         if let Partner::Side(side) = site.second {
-            *property = plan.sides[side.index()].as_ref().map(|side| side.property);
+            *property = plan.sides[side].as_ref().map(|side| side.property);
         }
     }
     let without = properties.iter().position(Option::is_none);

@@ -1,33 +1,44 @@
-//! Places the grains: drops them, arranges them, or reads them from a table.
+//! Places the grains, layer by layer: drops them, arranges them, or reads them from a list.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use super::ReadGrains;
-use super::check_grains::{DroppedPlan, GrainSource, GrainsPlan, SizesPlan};
+use super::check_box::{BoxPlan, ShapePlan};
+use super::check_dropped::DroppedPlan;
+use super::check_grains::{GrainSource, ListedPlan};
+use super::check_layers::{GrainsPlan, LayerPlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
+use super::fitting;
 use super::named_file::named_file;
-use super::value::Placed;
-use crate::assembly::{self, Grain, Side};
-use crate::geometry::Vector;
-use crate::ids::{GrainId, PerGrain, PerSide};
-use crate::packing::{self, Bed, Mass, PackingError, SieveCurve, Sizes};
+use crate::assembly::{Grain, Side};
+use crate::geometry::{Container, Vector};
+use crate::ids::{PerGrain, PerSide};
+use crate::packing::{self, Bed, PackingError, Shape, random::Source};
 
-/// Grains in their box.
+/// Grains in their container.
 #[derive(Clone, Debug)]
 pub struct PlacedGrains {
-    /// The grains.
+    /// The grains, layer by layer.
     pub grains: PerGrain<Grain>,
-    /// Width of the box, `[length]`.
-    pub width: f64,
-    /// Height of the box, `[length]`.
-    pub height: f64,
+    /// Number of grains of each layer.
+    pub layers: Vec<usize>,
+    /// The container.
+    pub container: BoxPlan,
+    /// Height that the highest grain reaches, `[length]`.
+    pub highest: f64,
     /// Mean radius, `[length]`.
     pub mean_radius: f64,
 }
 
-/// Places the grains and checks that they neither overlap nor leave the box.
+impl PlacedGrains {
+    /// The sides of the container.
+    pub fn sides(&self, present: &[bool]) -> PerSide<Side> {
+        self.container.sides(self.highest, present)
+    }
+}
+
+/// Places the grains and checks that they neither overlap nor leave the container.
 pub fn place(
     plan: &GrainsPlan,
     seed: u64,
@@ -36,33 +47,32 @@ pub fn place(
     grain_lists: &ReadGrains<'_>,
     checker: &mut Checker,
 ) -> Option<PlacedGrains> {
-    let grains = match &plan.source {
-        GrainSource::Listed(file) => listed(file, folder, grain_lists, checker)?,
-        _ => match packed(plan, seed) {
-            Ok(grains) => grains,
-            Err(error) => {
-                checker.push(
-                    Problem::at(
-                        &plan.span,
-                        format!("the grains cannot be placed: {error}"),
-                        "expected grains that fit into the box",
-                    )
-                    .and(&plan.box_span, "the box"),
-                );
-                return None;
-            }
-        },
-    };
-    let top = |grain: &Grain| grain.centre.y + grain.radius;
-    let highest = grains.values().iter().map(top).fold(0.0, f64::max);
-    let mean = grains.values().iter().map(|g| g.radius).sum::<f64>() / grains.len() as f64;
+    let mut grains: Vec<Grain> = Vec::new();
+    let mut layers = Vec::new();
+    for (layer, number) in plan.layers.iter().zip(0..) {
+        let placed = match &layer.source {
+            GrainSource::Listed(list) => listed(list, folder, grain_lists, checker)?,
+            _ => Filling::new(
+                &plan.container,
+                &grains,
+                Source {
+                    seed,
+                    layer: number,
+                },
+            )
+            .layer(layer, checker)?,
+        };
+        layers.push(placed.len());
+        grains.extend(placed.values());
+    }
     let placed = PlacedGrains {
-        width: plan.width,
-        height: plan.height.unwrap_or(highest),
-        mean_radius: mean,
-        grains,
+        highest: highest(&grains, 0.0),
+        mean_radius: grains.iter().map(|g| g.radius).sum::<f64>() / grains.len() as f64,
+        container: plan.container.clone(),
+        layers,
+        grains: grains.into(),
     };
-    if placed.height <= 0.0 {
+    if placed.container.top().unwrap_or(placed.highest) <= placed.container.floor() {
         checker.push(Problem::at(
             &plan.span,
             "no grain reaches above the floor of the box",
@@ -70,179 +80,204 @@ pub fn place(
         ));
         return None;
     }
-    let tolerance = touching_tolerance * mean;
-    let apart = overlaps(&placed, plan, tolerance, checker);
-    let inside = outside(&placed, plan, tolerance, checker);
-    (apart && inside).then_some(placed)
+    let tolerance = touching_tolerance * placed.mean_radius;
+    fitting::check(&placed, plan, tolerance, checker).then_some(placed)
 }
 
-fn packed(plan: &GrainsPlan, seed: u64) -> Result<PerGrain<Grain>, PackingError> {
-    match &plan.source {
-        GrainSource::Hexagonal(radius, rows) => packing::rows::hexagonal(*radius, plan.width, rows),
-        GrainSource::Square(radius, columns, rows) => {
-            packing::rows::square(*radius, plan.width, *columns, *rows)
+/// Height that the highest of some grains reaches, at least `floor`.
+fn highest(grains: &[Grain], floor: f64) -> f64 {
+    let top = |grain: &Grain| grain.centre.y + grain.radius;
+    grains.iter().map(top).fold(floor, f64::max)
+}
+
+/// A layer above the grains of those below.
+struct Filling<'a> {
+    container: &'a BoxPlan,
+    below: &'a [Grain],
+    /// Height of the highest grain below, or of the floor.
+    base: f64,
+    source: Source,
+}
+
+impl<'a> Filling<'a> {
+    fn new(container: &'a BoxPlan, below: &'a [Grain], source: Source) -> Self {
+        Self {
+            container,
+            below,
+            base: highest(below, container.floor()),
+            source,
         }
-        GrainSource::Dropped(dropped) => self::dropped(dropped, plan, seed),
-        GrainSource::Listed(_) => Ok(PerGrain::default()),
+    }
+
+    fn layer(&self, plan: &LayerPlan, checker: &mut Checker) -> Option<PerGrain<Grain>> {
+        if let Some(top) = plan.top.filter(|top| *top <= self.base) {
+            checker.push(Problem::at(
+                &plan.span,
+                format!(
+                    "no room is left for this layer: the grains below reach up to {}",
+                    short(self.base)
+                ),
+                format!("expected a `top` or a box above that, not {}", short(top)),
+            ));
+            return None;
+        }
+        let placed = self.packed(plan);
+        if let (
+            Ok(placed),
+            GrainSource::Dropped(DroppedPlan {
+                count: Some(count), ..
+            }),
+        ) = (&placed, &plan.source)
+            && placed.len() < *count
+        {
+            checker.push(Problem::at(
+                &plan.span,
+                format!("only {} of {count} grains fit into the box", placed.len()),
+                "expected fewer or smaller grains, or a larger box",
+            ));
+            return None;
+        }
+        placed
+            .map_err(|error| {
+                checker.push(
+                    Problem::at(
+                        &plan.span,
+                        format!("the grains cannot be placed: {error}"),
+                        "expected grains that fit into the box",
+                    )
+                    .and(&self.container.span, "the box"),
+                );
+            })
+            .ok()
+    }
+
+    fn packed(&self, plan: &LayerPlan) -> Result<PerGrain<Grain>, PackingError> {
+        let [low, high] = self.container.extents();
+        let (width, seed) = (high.x - low.x, self.seed());
+        match &plan.source {
+            GrainSource::Hexagonal(radius, rows) => {
+                let rows = packing::rows::hexagonal(*radius, width, rows)?;
+                Ok(self.lifted(&rows, low.x))
+            }
+            GrainSource::Square(radius, columns, rows) => {
+                let rows = packing::rows::square(*radius, width, *columns, *rows)?;
+                Ok(self.lifted(&rows, low.x))
+            }
+            GrainSource::Dropped(dropped) => self.dropped(plan, dropped),
+            GrainSource::AdvancingFront(front) => {
+                packing::advancing_front(&self.room(plan)?, &front.sizes, front.count, seed)
+            }
+            GrainSource::Target(target) => {
+                let fraction = target.packing_fraction;
+                packing::target(&self.room(plan)?, &target.sizes, fraction, seed)
+            }
+            GrainSource::Listed(_) => Ok(PerGrain::default()),
+        }
+    }
+
+    fn dropped(
+        &self,
+        layer: &LayerPlan,
+        plan: &DroppedPlan,
+    ) -> Result<PerGrain<Grain>, PackingError> {
+        let (bed, seed) = (self.bed(layer), self.source.seed);
+        let dropped = if let Some(count) = plan.count {
+            let radii = plan.sizes.radii(count, self.source)?;
+            packing::dropped::drop(&bed, &radii, plan.tries, seed)?
+        } else {
+            packing::dropped::fill(&bed, &plan.sizes, plan.tries, seed)?
+        };
+        Ok(dropped.grains)
+    }
+
+    /// Seed of the layer, for what knows no layers.
+    fn seed(&self) -> u64 {
+        const APART: u64 = 0x9e37_79b9_7f4a_7c15;
+        let Source { seed, layer } = self.source;
+        seed.wrapping_add(APART.wrapping_mul(u64::from(layer)))
+    }
+
+    /// Grains that stand on y = 0 and begin at x = 0, put onto those below.
+    fn lifted(&self, grains: &PerGrain<Grain>, left: f64) -> PerGrain<Grain> {
+        let shift = Vector::new(left, self.base);
+        grains.map(|grain| Grain {
+            centre: grain.centre + shift,
+            radius: grain.radius,
+        })
+    }
+
+    fn bed(&self, plan: &LayerPlan) -> Bed<'a> {
+        let shape = match &self.container.shape {
+            ShapePlan::Box { width, .. } => Shape::Box { width: *width },
+            ShapePlan::Polygon(_) => {
+                let [low, high] = self.container.extents();
+                let whole = self.container.part(low.y, high.y);
+                Shape::Polygon(whole.unwrap_or_else(|| Container::polygon(&[])))
+            }
+        };
+        Bed {
+            shape,
+            resting: self.below,
+            top: plan.top,
+            layer: self.source.layer,
+        }
+    }
+
+    /// The part of the container that the layer is to fill.
+    fn room(&self, plan: &LayerPlan) -> Result<Container, PackingError> {
+        let top = plan.top.unwrap_or(self.base);
+        let length = top - self.base;
+        let part = self.container.part(self.base, top);
+        part.ok_or(PackingError::BoxLength { length })
     }
 }
 
-fn dropped(
-    dropped: &DroppedPlan,
-    plan: &GrainsPlan,
-    seed: u64,
-) -> Result<PerGrain<Grain>, PackingError> {
-    let sizes = match &dropped.sizes {
-        SizesPlan::Uniform(from, to) => Sizes::Uniform {
-            from: *from,
-            to: *to,
-        },
-        SizesPlan::Sieve {
-            diameters,
-            passing,
-            sphere,
-        } => Sizes::Sieve(SieveCurve {
-            diameter: diameters.clone(),
-            passing: passing.clone(),
-            mass: if *sphere { Mass::Sphere } else { Mass::Disc },
-        }),
-    };
-    let mut bed = Bed::empty_box(plan.width);
-    let pack = if let Some(count) = dropped.count {
-        let radii = sizes.radii(count, seed)?;
-        packing::dropped::drop(&bed, &radii, dropped.tries, seed)?
-    } else {
-        bed.top = plan.height;
-        packing::dropped::fill(&bed, &sizes, dropped.tries, seed)?
-    };
-    Ok(pack.grains)
-}
-
 fn listed(
-    file: &Placed<String>,
+    plan: &ListedPlan,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
     checker: &mut Checker,
 ) -> Option<PerGrain<Grain>> {
+    let ListedPlan { file, frame, rows } = plan;
     let path = named_file(file, folder, "a list of grains", checker)?;
     let is_csv = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let rows = if is_csv {
-        super::grain_list::read_csv(&path)
-    } else {
-        grain_lists(&path)
+    let list = match frame {
+        Some(_) if is_csv => Err("a csv file has no frames".to_owned()),
+        None if is_csv => super::grain_list::read_csv(&path),
+        frame => grain_lists(&path, frame.as_ref().map(|frame| frame.value)),
     };
-    let rows = rows.and_then(|rows| super::grain_list::check(&rows).map(|()| rows));
-    match rows {
-        Ok(rows) => rows
-            .into_iter()
-            .map(|[x, y, radius]| {
-                Some(Grain {
-                    centre: Vector::new(x, y),
-                    radius,
-                })
-            })
-            .collect(),
+    let mut list = match list.and_then(|list| super::grain_list::check(&list).map(|()| list)) {
+        Ok(list) => list,
         Err(what) => {
-            checker.push(Problem::at(
-                &file.span,
-                format!("`{}`: {what}", file.value),
-                "expected a table with columns `x`, `y` and `radius`",
-            ));
-            None
+            let (span, expected) = match frame {
+                None => (
+                    &file.span,
+                    "expected a list of grains with `x`, `y` and `radius`",
+                ),
+                Some(frame) => (&frame.span, "expected a frame of the file, or no `frame`"),
+            };
+            let message = format!("`{}`: {what}", file.value);
+            checker.push(Problem::at(span, message, expected));
+            return None;
         }
+    };
+    if let Some(rows) = rows {
+        let [first, last] = rows.value;
+        if last >= list.len() {
+            checker.push(Problem::at(
+                &rows.span,
+                format!("`{}` has no row {last}", file.value),
+                format!("expected rows from 0 to {}", list.len() - 1),
+            ));
+            return None;
+        }
+        list = list[first..=last].to_vec();
     }
-}
-
-/// How many of a list are told.
-const TOLD: usize = 5;
-
-fn list(mut told: Vec<String>, all: usize) -> String {
-    if all > told.len() {
-        told.push(format!("and {} more", all - told.len()));
-    }
-    told.join(", ")
-}
-
-fn overlaps(
-    placed: &PlacedGrains,
-    plan: &GrainsPlan,
-    tolerance: f64,
-    checker: &mut Checker,
-) -> bool {
-    // Grains that were packed here have no twins, and many twins would make many pairs.
-    if matches!(plan.source, GrainSource::Listed(_))
-        && let Some((first, second)) = same_place(&placed.grains)
-    {
-        checker.push(Problem::at(
-            &plan.span,
-            format!("grains {first} and {second} have the same centre"),
-            "expected each grain once",
-        ));
-        return false;
-    }
-    let pairs = assembly::overlaps(&placed.grains, tolerance);
-    if pairs.is_empty() {
-        return true;
-    }
-    let told = pairs
-        .iter()
-        .take(TOLD)
-        .map(|(first, second, depth)| format!("{first} and {second} by {}", short(*depth)))
-        .collect();
-    checker.push(
-        Problem::at(
-            &plan.span,
-            format!("grains overlap: {}", list(told, pairs.len())),
-            format!("expected no overlap above {}", short(tolerance)),
-        )
-        .help("`contacts.touching_tolerance` is the overlap allowed, in mean radii"),
-    );
-    false
-}
-
-/// Two grains with the same centre.
-fn same_place(grains: &PerGrain<Grain>) -> Option<(GrainId, GrainId)> {
-    let mut seen = HashMap::with_capacity(grains.len());
-    grains.iter().find_map(|(id, grain)| {
-        let key = (grain.centre.x.to_bits(), grain.centre.y.to_bits());
-        seen.insert(key, id).map(|first| (first, id))
-    })
-}
-
-fn outside(
-    placed: &PlacedGrains,
-    plan: &GrainsPlan,
-    tolerance: f64,
-    checker: &mut Checker,
-) -> bool {
-    let sides: PerSide<Side> = assembly::box_sides(placed.width, placed.height, [false; 4]);
-    let grains = assembly::outside(&placed.grains, &sides, tolerance);
-    if grains.is_empty() {
-        return true;
-    }
-    let told = grains
-        .iter()
-        .take(TOLD)
-        .map(|(grain, side, depth)| {
-            format!(
-                "grain {grain} beyond the {} side by {}",
-                sides[*side].name,
-                short(*depth)
-            )
-        })
-        .collect();
-    checker.push(
-        Problem::at(
-            &plan.box_span,
-            format!("grains lie outside the box: {}", list(told, grains.len())),
-            format!(
-                "the box is {} wide and {} high",
-                placed.width, placed.height
-            ),
-        )
-        .and(&plan.span, "expected grains inside the box"),
-    );
-    false
+    let grain = |[x, y, radius]: [f64; 3]| Grain {
+        centre: Vector::new(x, y),
+        radius,
+    };
+    Some(list.into_iter().map(grain).collect())
 }

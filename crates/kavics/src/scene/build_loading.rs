@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Range;
 
-use super::check_contacts::{ContactsPlan, FREEDOMS, SIDES};
+use super::check_contacts::{ContactsPlan, FREEDOMS, SidePlan};
 use super::checker::Checker;
 use super::choose::choose;
 use super::diagnostic::{Problem, short};
@@ -12,9 +12,9 @@ use super::edge_load::edge_loads;
 use super::loading_plan::{
     LoadKind, LoadPlan, LoadingPlan, MotionPlan, MovePlan, TargetPlan, WeightPlan,
 };
-use crate::assembly::{Assembly, Grain, Partner, envelope};
+use super::sides::{edge_called, side_called};
+use crate::assembly::{Assembly, Grain, Partner, envelope, middle};
 use crate::equilibrium::{Freedom, Load};
-use crate::geometry::Vector;
 use crate::ids::{BodyId, GrainId, SideId};
 use crate::loading::{Action, AppliedLoad, Held, Prescribed, Program, Stage};
 
@@ -101,7 +101,7 @@ impl Loading<'_> {
 
     /// What no move drives and the scene does not set free is held.
     fn hold_sides(&self, owners: &mut Owners) {
-        for (side, plan) in self.contacts.sides.iter().enumerate() {
+        for (side, plan) in self.contacts.sides.values().iter().enumerate() {
             let Some(plan) = plan else { continue };
             for (_, freedom) in FREEDOMS {
                 if !plan.free.contains(&freedom) {
@@ -189,7 +189,7 @@ impl Loading<'_> {
     fn name(&self, body: BodyId) -> String {
         match self.assembly.partner(body) {
             Partner::Grain(grain) => format!("grain {grain}"),
-            Partner::Side(side) => format!("the {} side", self.assembly.sides[side].name),
+            Partner::Side(side) => side_called(&self.assembly.sides[side].name),
         }
     }
 
@@ -205,9 +205,7 @@ impl Loading<'_> {
                 free_rotation,
                 span,
             } => {
-                let top = &self.assembly.sides[SideId(3)];
-                let centre = Vector::new(0.5 * top.length(), 0.5 * top.start.y);
-                let r = self.assembly.grains[grain].centre - centre;
+                let r = self.assembly.grains[grain].centre - middle(&self.assembly.sides);
                 let mut values = vec![
                     (Freedom::X, xx * r.x + yx * r.y, span.clone()),
                     (Freedom::Y, xy * r.x + yy * r.y, span.clone()),
@@ -225,14 +223,14 @@ impl Loading<'_> {
         side: usize,
         span: &Range<usize>,
         checker: &mut Checker,
-    ) -> Option<&super::check_contacts::SidePlan> {
-        let plan = self.contacts.sides[side].as_ref();
+    ) -> Option<&SidePlan> {
+        let plan = self.contacts.sides.values()[side].as_ref();
         if plan.is_none() {
-            let name = SIDES[side].0;
+            let name = checker.sides.name(side);
             checker.push(
                 Problem::at(
                     span,
-                    format!("the {name} side is absent"),
+                    format!("{} is absent", side_called(&name)),
                     "expected a side that the scene names",
                 )
                 .help(format!(
@@ -274,11 +272,11 @@ impl Loading<'_> {
                     ));
                 } else if uncovered > 1e-9 * side.length() {
                     checker.warn(format!(
-                        "load `{}`: no grain is met over {} of the {} of the {} edge; nothing acts there",
+                        "load `{}`: no grain is met over {} of the {} of {}; nothing acts there",
                         load.name.value,
                         short(uncovered),
                         short(side.length()),
-                        side.name
+                        edge_called(&side.name)
                     ));
                 }
                 for (grain, load) in on_grains {
@@ -335,11 +333,12 @@ fn moves_a_free_side(
     table: &Range<usize>,
     checker: &mut Checker,
 ) {
-    let (side, freedom) = (SIDES[side].0, freedom_name(freedom));
+    let side = side_called(&checker.sides.name(side));
+    let freedom = freedom_name(freedom);
     checker.push(
         Problem::at(
             at,
-            format!("the {side} side is free in {freedom} and cannot be moved there"),
+            format!("{side} is free in {freedom} and cannot be moved there"),
             "expected a move of a held freedom",
         )
         .and(table, format!("`free` sets {freedom} free here")),
@@ -353,11 +352,12 @@ fn loads_a_held_side(
     table: &Range<usize>,
     checker: &mut Checker,
 ) {
-    let (side, freedom) = (SIDES[side].0, freedom_name(freedom));
+    let side = side_called(&checker.sides.name(side));
+    let freedom = freedom_name(freedom);
     checker.push(
         Problem::at(
             at,
-            format!("the {side} side is held in {freedom} and cannot be loaded there"),
+            format!("{side} is held in {freedom} and cannot be loaded there"),
             "expected a load on a free freedom",
         )
         .and(table, format!("`free = [\"{freedom}\"]` would set it free")),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::check_choice::choice;
-use super::check_contacts::{FREEDOMS, SIDES};
+use super::check_contacts::FREEDOMS;
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{ChoiceFile, ForceFile, LoadFile, MoveFile, StrainFile};
@@ -13,7 +13,7 @@ use super::value::{Number, Placed, Quantity};
 use crate::equilibrium::{Freedom, Load};
 
 fn side(word: &Placed<String>, checker: &mut Checker) -> Option<TargetPlan> {
-    let index = checker.word(word, "side", &SIDES)?;
+    let index = checker.side(word, "side")?;
     Some(TargetPlan::Side(index, word.span.clone()))
 }
 
@@ -212,7 +212,7 @@ fn edge_load(
         ));
         return None;
     }
-    let index = checker.word(edge, "edge", &SIDES);
+    let index = checker.side(edge, "edge");
     let mut values = |list: &Option<Placed<Vec<Number>>>, key: &str| {
         list.as_ref().map_or(Some([0.0; 2]), |list| {
             checker.pair(list, key, Dimension::ForcePerLength)

@@ -1,6 +1,6 @@
 //! Checks of a choice of grains.
 
-use super::check_contacts::{Ranges, SIDES, optional_range};
+use super::check_contacts::{Ranges, optional_range};
 use super::checker::Checker;
 use super::diagnostic::Problem;
 use super::file::ChoiceFile;
@@ -35,7 +35,7 @@ pub fn choice(table: &Placed<ChoiceFile>, checker: &mut Checker) -> Option<Choic
         ),
     ];
     let kind = match checker.exactly_one(&table.span, "the choice of grains", alternatives)? {
-        Kind::Edge(edge) => ChoiceKind::Edge(checker.word(edge, "edge", &SIDES)?),
+        Kind::Edge(edge) => ChoiceKind::Edge(checker.side(edge, "edge")?),
         Kind::Ids(ids) if ids.value.is_empty() => {
             checker.push(Problem::at(
                 &ids.span,

@@ -11,7 +11,7 @@ use super::unit::Dimension;
 use super::value::{Number, Placed};
 use crate::assembly::Between;
 use crate::equilibrium::Freedom;
-use crate::ids::{PerProperty, PropertyId};
+use crate::ids::{Id, PerProperty, PerSide, PropertyId, SideId};
 
 /// Contacts, their properties and where they hold.
 #[derive(Clone, Debug)]
@@ -24,8 +24,8 @@ pub struct ContactsPlan {
     pub properties: PerProperty<PropertyPlan>,
     /// Zones.
     pub zones: Vec<ZonePlan>,
-    /// Sides that are present; in the order left, right, bottom, top.
-    pub sides: [Option<SidePlan>; 4],
+    /// The sides of the container; none: absent.
+    pub sides: PerSide<Option<SidePlan>>,
     /// Where contacts stand in the file.
     pub span: Range<usize>,
 }
@@ -85,9 +85,6 @@ pub struct SidePlan {
     /// Where the side stands in the file.
     pub span: Range<usize>,
 }
-
-/// Names of the sides of a box, in the order of their ids.
-pub const SIDES: [(&str, usize); 4] = [("left", 0), ("right", 1), ("bottom", 2), ("top", 3)];
 
 /// Names of the freedoms.
 pub const FREEDOMS: [(&str, Freedom); 3] = [
@@ -227,21 +224,22 @@ pub fn optional_range(
     list.map_or(Some(None), |list| checker.range(list, key).map(Some))
 }
 
-fn sides(file: &SceneFile, names: &[&str], checker: &mut Checker) -> Option<[Option<SidePlan>; 4]> {
-    let Some(sides) = &file.side else {
-        return Some([None, None, None, None]);
-    };
-    let sides = &sides.value;
-    let tables = [&sides.left, &sides.right, &sides.bottom, &sides.top];
-    let plans = tables.map(|table| table.as_ref().map(|table| side(table, names, checker)));
-    let mut all = [None, None, None, None];
-    for (place, plan) in all.iter_mut().zip(plans) {
-        *place = match plan {
-            None => None,
-            Some(plan) => Some(plan?),
-        };
+fn sides(
+    file: &SceneFile,
+    names: &[&str],
+    checker: &mut Checker,
+) -> Option<PerSide<Option<SidePlan>>> {
+    let mut sides = PerSide::filled(None, checker.sides.count());
+    let mut right = true;
+    for (name, table) in &file.side.0 {
+        let found = checker.side(name, "side");
+        let plan = side(table, names, checker);
+        match (found, plan) {
+            (Some(found), Some(plan)) => sides[SideId::from_index(found)] = Some(plan),
+            _ => right = false,
+        }
     }
-    Some(all)
+    right.then_some(sides)
 }
 
 fn side(table: &Placed<SideFile>, names: &[&str], checker: &mut Checker) -> Option<SidePlan> {

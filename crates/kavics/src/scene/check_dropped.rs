@@ -1,13 +1,14 @@
-//! Checks of grains that are dropped.
+//! Checks of grains that are dropped, advance in a front, or are to meet a packing fraction.
 
 use std::ops::Range;
 
-use super::check_grains::{DroppedPlan, SizesPlan};
+use super::check_sizes::{mean_area, sizes};
 use super::checker::{Bound, Checker};
 use super::diagnostic::{Problem, short};
-use super::file::{DroppedFile, RadiiFile, SieveFile};
+use super::file_grains::{DroppedFile, FrontFile, TargetFile};
 use super::unit::Dimension;
-use super::value::{Placed, ValueOr};
+use super::value::Placed;
+use crate::packing::Sizes;
 
 /// More drops than anybody waits for.
 const MOST_DROPS: usize = 10_000_000;
@@ -15,36 +16,53 @@ const MOST_DROPS: usize = 10_000_000;
 const MOST_DROPS_OF_A_FILL: usize = 1_000_000;
 /// More drops a grain than make a difference.
 const MOST_TRIES: i64 = 10_000;
+/// More grains of a front, and of a wanted packing fraction, than anybody waits for.
+const MOST_IN_FRONT: usize = 10_000_000;
+const MOST_IN_TARGET: usize = 1_000_000;
+
+/// Grains that are dropped.
+#[derive(Clone, Debug)]
+pub struct DroppedPlan {
+    /// How many; none: until the layer is full.
+    pub count: Option<usize>,
+    /// Their sizes.
+    pub sizes: Sizes,
+    /// Each at the lowest of so many places.
+    pub tries: usize,
+}
+
+/// Grains that are added one after another at a front.
+#[derive(Clone, Debug)]
+pub struct FrontPlan {
+    /// How many; none: until the layer is full.
+    pub count: Option<usize>,
+    /// Their sizes.
+    pub sizes: Sizes,
+}
+
+/// Grains of a wanted packing fraction.
+#[derive(Clone, Debug)]
+pub struct TargetPlan {
+    /// Area of the grains over that of their room.
+    pub packing_fraction: f64,
+    /// Their sizes.
+    pub sizes: Sizes,
+}
 
 /// How grains are dropped.
 pub fn dropped_plan(table: &Placed<DroppedFile>, checker: &mut Checker) -> Option<DroppedPlan> {
-    enum Sizes<'a> {
-        Radius(&'a Placed<ValueOr<RadiiFile>>),
-        Sieve(&'a Placed<SieveFile>),
-    }
     let file = &table.value;
-    let count = match &file.count {
-        None => Some(None),
-        Some(count) => checker.count(count, "count", 1).map(Some),
-    };
+    let count = count(file.count.as_ref(), MOST_DROPS, checker);
     let tries = match &file.tries {
         None => Some(1),
         Some(tries) => checker.count_up_to(tries, "tries", 1, MOST_TRIES),
     };
-    let alternatives = [
-        (
-            "radius",
-            file.radius.as_ref().map(|r| (Sizes::Radius(r), &r.span)),
-        ),
-        (
-            "sieve",
-            file.sieve.as_ref().map(|s| (Sizes::Sieve(s), &s.span)),
-        ),
-    ];
-    let sizes = match checker.exactly_one(&table.span, "the size of the grains", alternatives)? {
-        Sizes::Radius(radius) => radii(radius, checker),
-        Sizes::Sieve(sieve) => sieve_curve(&sieve.value, checker),
-    };
+    let sizes = sizes(
+        file.radius.as_ref(),
+        file.sieve.as_ref(),
+        &table.span,
+        checker,
+    );
     let (count, tries) = (count?, tries?);
     if let (Some(count), Some(place)) = (count, &file.count)
         && count.saturating_mul(tries) > MOST_DROPS
@@ -63,169 +81,103 @@ pub fn dropped_plan(table: &Placed<DroppedFile>, checker: &mut Checker) -> Optio
     })
 }
 
-fn radii(radius: &Placed<ValueOr<RadiiFile>>, checker: &mut Checker) -> Option<SizesPlan> {
-    let (length, positive) = (Dimension::Length, Bound::Positive);
-    match &radius.value {
-        ValueOr::Value(value) => {
-            let radius = checker.quantity(value, &radius.span, "radius", length, positive)?;
-            Some(SizesPlan::Uniform(radius, radius))
-        }
-        ValueOr::Table(limits) => {
-            let from = checker.number(&limits.from, "from", length, positive);
-            let to = checker.number(&limits.to, "to", length, positive);
-            let (from, to) = (from?, to?);
-            if from > to {
-                checker.push(
-                    Problem::at(
-                        &limits.to.span,
-                        format!("the largest radius {to} is below the smallest, {from}"),
-                        format!("expected a radius of at least {from}"),
-                    )
-                    .and(&limits.from.span, "the smallest radius"),
-                );
-                return None;
-            }
-            Some(SizesPlan::Uniform(from, to))
-        }
-    }
-}
-
-fn sieve_curve(file: &SieveFile, checker: &mut Checker) -> Option<SizesPlan> {
-    let sphere = file.mass.as_ref().map_or(Some(false), |mass| {
-        checker.word(mass, "mass", &[("disc", false), ("sphere", true)])
-    });
-    let diameters: Option<Vec<f64>> = file
-        .diameter
-        .value
-        .iter()
-        .map(|d| checker.number(d, "diameter", Dimension::Length, Bound::Positive))
-        .collect();
-    let passing: Option<Vec<f64>> = file
-        .passing
-        .value
-        .iter()
-        .map(|p| checker.number(p, "passing", Dimension::Number, Bound::NonNegative))
-        .collect();
-    let (diameters, passing) = (diameters?, passing?);
-    sieve_lengths(file, checker)?;
-    for i in 1..diameters.len() {
-        if diameters[i] <= diameters[i - 1] {
-            checker.push(Problem::at(
-                &file.diameter.value[i].span,
-                format!(
-                    "diameter {} does not rise above {}",
-                    diameters[i],
-                    diameters[i - 1]
-                ),
-                "expected a larger diameter than the one before",
-            ));
-            return None;
-        }
-        if passing[i] < passing[i - 1] {
-            checker.push(Problem::at(
-                &file.passing.value[i].span,
-                format!(
-                    "the sieve curve falls from {} to {}",
-                    passing[i - 1],
-                    passing[i]
-                ),
-                "expected at least the share before",
-            ));
-            return None;
-        }
-    }
-    sieve_ends(file, &passing, checker)?;
-    Some(SizesPlan::Sieve {
-        diameters,
-        passing,
-        sphere: sphere?,
+/// How grains advance in a front.
+pub fn front_plan(table: &Placed<FrontFile>, checker: &mut Checker) -> Option<FrontPlan> {
+    let FrontFile {
+        count,
+        radius,
+        sieve,
+    } = &table.value;
+    let count = self::count(count.as_ref(), MOST_IN_FRONT, checker);
+    let sizes = sizes(radius.as_ref(), sieve.as_ref(), &table.span, checker);
+    Some(FrontPlan {
+        count: count?,
+        sizes: sizes?,
     })
 }
 
-fn sieve_lengths(file: &SieveFile, checker: &mut Checker) -> Option<()> {
-    let (diameters, passing) = (file.diameter.value.len(), file.passing.value.len());
-    if diameters == passing && diameters >= 2 {
-        return Some(());
+/// Which packing fraction grains are to meet.
+pub fn target_plan(table: &Placed<TargetFile>, checker: &mut Checker) -> Option<TargetPlan> {
+    let TargetFile {
+        packing_fraction: number,
+        radius,
+        sieve,
+    } = &table.value;
+    let key = "packing_fraction";
+    let fraction = checker.number(number, key, Dimension::Number, Bound::Positive);
+    let sizes = sizes(radius.as_ref(), sieve.as_ref(), &table.span, checker);
+    let fraction = fraction?;
+    if fraction >= 1.0 {
+        checker.push(Problem::at(
+            &number.span,
+            format!("`{key}` cannot be {fraction}"),
+            "expected a number above 0 and below 1",
+        ));
+        return None;
     }
-    checker.push(
-        Problem::at(
-            &file.passing.span,
-            format!("a sieve curve with {diameters} diameters and {passing} shares"),
-            "expected a share for each of at least two diameters",
-        )
-        .and(&file.diameter.span, "the diameters"),
-    );
-    None
+    Some(TargetPlan {
+        packing_fraction: fraction,
+        sizes: sizes?,
+    })
 }
 
-fn sieve_ends(file: &SieveFile, passing: &[f64], checker: &mut Checker) -> Option<()> {
-    let last = passing.len() - 1;
-    for (i, expected) in [(0, 0.0), (last, 1.0)] {
-        if passing[i] != expected {
-            checker.push(
-                Problem::at(
-                    &file.passing.value[i].span,
-                    format!(
-                        "the sieve curve runs from {} to {}",
-                        passing[0], passing[last]
-                    ),
-                    format!("expected {expected}"),
-                )
-                .help("the shares that pass run from 0 to 1"),
-            );
-            return None;
-        }
+#[expect(clippy::option_option, reason = "wrong, absent, there")]
+fn count(count: Option<&Placed<i64>>, most: usize, checker: &mut Checker) -> Option<Option<usize>> {
+    match count {
+        None => Some(None),
+        Some(count) => checker
+            .count_up_to(count, "count", 1, most as i64)
+            .map(Some),
     }
-    Some(())
 }
 
-/// Whether a box can be filled in a time that anybody waits for, by an estimate of the number of grains.
-pub fn can_be_filled(
-    dropped: &DroppedPlan,
-    width: f64,
-    height: f64,
-    span: &Range<usize>,
-    checker: &mut Checker,
-) -> Option<()> {
-    // Discs of one size cover about so much of the plane when dropped.
-    const COVERED: f64 = 0.8;
-    let grains = COVERED * width * height / mean_area(&dropped.sizes);
-    if grains * dropped.tries as f64 <= MOST_DROPS_OF_A_FILL as f64 {
-        return Some(());
-    }
-    checker.push(
-        Problem::at(
-            span,
-            format!(
-                "about {} grains of {} drops each would fill the box",
-                short(grains),
-                dropped.tries
+/// What fills a layer up to its top.
+#[derive(Clone, Copy, Debug)]
+pub enum Fill<'a> {
+    /// Dropped grains without a count.
+    Dropped(&'a DroppedPlan),
+    /// A front.
+    Front(&'a FrontPlan),
+    /// A packing fraction.
+    Target(&'a TargetPlan),
+}
+
+impl Fill<'_> {
+    /// Whether a layer of this area, `[length²]`, is filled in a time that anybody waits for, by an estimate of the
+    /// number of grains.
+    pub fn can_be_done(self, area: f64, span: &Range<usize>, checker: &mut Checker) -> Option<()> {
+        // Discs of one size cover about so much of the plane.
+        const COVERED: f64 = 0.8;
+        let grains = |sizes: &Sizes, covered: f64| covered * area / mean_area(sizes);
+        let (number, tries, most) = match self {
+            Self::Dropped(plan) => (
+                grains(&plan.sizes, COVERED),
+                plan.tries,
+                MOST_DROPS_OF_A_FILL,
             ),
-            format!("expected at most {MOST_DROPS_OF_A_FILL} drops"),
-        )
-        .help("give larger grains, a smaller box or a `count`"),
-    );
-    None
-}
-
-/// Mean area of the grains, estimated for a sieve curve by one size a class, `[length²]`.
-fn mean_area(sizes: &SizesPlan) -> f64 {
-    use std::f64::consts::PI;
-    match sizes {
-        SizesPlan::Uniform(from, to) => PI / 3.0 * (from * from + from * to + to * to),
-        SizesPlan::Sieve {
-            diameters,
-            passing,
-            sphere,
-        } => {
-            let (mut number, mut area) = (0.0, 0.0);
-            for (d, p) in diameters.windows(2).zip(passing.windows(2)) {
-                let (square, mass) = (d[0] * d[1], p[1] - p[0]);
-                let of_class = mass / square / if *sphere { square.sqrt() } else { 1.0 };
-                number += of_class;
-                area += of_class * 0.25 * PI * square;
+            Self::Front(plan) if plan.count.is_some() => return Some(()),
+            Self::Front(plan) => (grains(&plan.sizes, COVERED), 1, MOST_IN_FRONT),
+            Self::Target(plan) => {
+                let number = grains(&plan.sizes, plan.packing_fraction);
+                (number, 1, MOST_IN_TARGET)
             }
-            area / number
+        };
+        if number * tries as f64 <= most as f64 {
+            return Some(());
         }
+        let (each, unit, or_count) = match self {
+            Self::Dropped(_) => (format!(" of {tries} drops each"), "drops", " or a `count`"),
+            Self::Front(_) => (String::new(), "grains", " or a `count`"),
+            Self::Target(_) => (String::new(), "grains", ""),
+        };
+        checker.push(
+            Problem::at(
+                span,
+                format!("about {} grains{each} would fill the box", short(number)),
+                format!("expected at most {most} {unit}"),
+            )
+            .help(format!("give larger grains, a smaller box{or_count}")),
+        );
+        None
     }
 }

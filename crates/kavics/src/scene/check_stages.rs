@@ -71,6 +71,7 @@ fn stage(
         ));
         return None;
     }
+    let name = name(number, table, checker);
     let applied = applied(table, actions, checker);
     let factors = match &table.value.factors.value {
         ListOr::List(list) if list.is_empty() => {
@@ -94,12 +95,26 @@ fn stage(
     for action in &applied {
         last[*action] = *factors.last()?;
     }
-    let name = table.value.name.clone();
     Some(Stage {
-        name: name.unwrap_or_else(|| format!("stage {}", number + 1)),
+        name: name?,
         actions: applied,
         factors,
     })
+}
+
+fn name(number: usize, table: &Placed<StageFile>, checker: &mut Checker) -> Option<String> {
+    let Some(name) = &table.value.name else {
+        return Some(format!("stage {}", number + 1));
+    };
+    if name.value.trim().is_empty() {
+        checker.push(Problem::at(
+            &name.span,
+            "the name of a stage is empty",
+            "expected a name for the results, or no `name`",
+        ));
+        return None;
+    }
+    Some(name.value.clone())
 }
 
 fn applied(

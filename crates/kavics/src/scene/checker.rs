@@ -6,6 +6,8 @@ use std::path::PathBuf;
 
 use super::SceneError;
 use super::diagnostic::{Problem, Problems, either, likely};
+use super::file::SceneFile;
+use super::sides::SideNames;
 use super::unit::{self, Dimension, UnitError};
 use super::value::{Number, Placed, Quantity};
 
@@ -32,9 +34,19 @@ pub struct Checker {
     pub warnings: Vec<String>,
     /// A file that the scene names, and why it could not be read.
     pub unreadable: Option<(PathBuf, io::Error)>,
+    /// Names of the sides of the container.
+    pub sides: SideNames,
 }
 
 impl Checker {
+    /// For a scene in which nothing is checked yet.
+    pub fn of(file: &SceneFile) -> Self {
+        Self {
+            sides: SideNames::of(file),
+            ..Self::default()
+        }
+    }
+
     /// Adds a mistake.
     pub fn push(&mut self, problem: Problem) {
         self.problems.push(problem);
@@ -188,6 +200,12 @@ impl Checker {
             );
         }
         found.map(|(_, meaning)| *meaning)
+    }
+
+    /// A side of the container by its name.
+    pub fn side(&mut self, word: &Placed<String>, key: &str) -> Option<usize> {
+        let found = self.sides.find(word, key);
+        found.map_err(|problem| self.push(problem)).ok()
     }
 
     /// Two numbers.

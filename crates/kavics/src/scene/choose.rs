@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::loading_plan::{ChoiceKind, ChoicePlan};
+use super::sides::edge_called;
 use super::value::Placed;
 use crate::assembly::{Assembly, Grain, outer_grains};
 use crate::geometry::Vector;
@@ -106,7 +107,8 @@ fn nearest(side: SideId, assembly: &Assembly) -> String {
     match gaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((gap, id)) => {
             format!(
-                "the grain nearest to the {name} edge is {id}, at a gap of {}",
+                "the grain nearest to {} is {id}, at a gap of {}",
+                edge_called(name),
                 short(gap)
             )
         }

@@ -159,13 +159,8 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Keys that are known, but not available.
-const NOT_AVAILABLE: [&str; 3] = ["layer", "polygon", "fracture_energy"];
-
-/// A stiffness has a `layer`, only a scene has none.
-fn is_available(name: &str, names: &[&str]) -> bool {
-    !NOT_AVAILABLE.contains(&name) || (name == "layer" && names.contains(&"modulus"))
-}
+/// A key that is known, but not available.
+const NOT_AVAILABLE: &str = "fracture_energy";
 
 /// What serde calls things, and what a user of scene files does.
 const WORDS: [(&str, &str); 8] = [
@@ -179,9 +174,14 @@ const WORDS: [(&str, &str); 8] = [
     ("a boolean", "`true` or `false`"),
 ];
 
-/// What the TOML reader says, in our words.
-pub fn from_toml(error: &toml::de::Error) -> Problem {
+/// What the TOML reader says of a text, in our words.
+pub fn from_toml(error: &toml::de::Error, text: &str) -> Problem {
     let span = error.span().unwrap_or(0..0);
+    if let Some(problem) =
+        wrong_brackets(error.message(), &span, text).or_else(|| too_large(error.message(), &span))
+    {
+        return problem;
+    }
     let message = WORDS
         .iter()
         .fold(error.message().to_owned(), |text, (theirs, ours)| {
@@ -203,12 +203,18 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             let names: Vec<&str> = names
                 .iter()
                 .copied()
-                .filter(|name| is_available(name, names))
+                .filter(|name| *name != NOT_AVAILABLE)
                 .collect();
             let known = if names.is_empty() {
                 "nothing is expected here".to_owned()
             } else {
                 format!("expected {}", either(names.iter().copied()))
+            };
+            let problem = match *key {
+                "layer" if names.contains(&"dropped") => {
+                    problem.help("write `dropped = { … }` or `[layer.dropped]` below `[[layer]]`")
+                }
+                _ => problem,
             };
             problem
                 .help(known)
@@ -224,6 +230,39 @@ pub fn from_toml(error: &toml::de::Error) -> Problem {
             None => Problem::at(&span, "this is not TOML as a scene has it", message),
         },
     }
+}
+
+/// `[load]` for `[[load]]`, and the other way round.
+fn wrong_brackets(message: &str, span: &Range<usize>, text: &str) -> Option<Problem> {
+    let before = text.get(..span.start)?;
+    let header = text.get(shown(span, text))?;
+    let single = header.strip_prefix('[')?.strip_suffix(']')?;
+    let (is, right) = match message {
+        _ if !before.is_empty() && !before.ends_with('\n') => return None,
+        _ if message.starts_with("invalid type: map") => ("a table", format!("[{header}]")),
+        _ if message.starts_with("invalid type: sequence") => {
+            ("a list of tables", single.to_owned())
+        }
+        _ => return None,
+    };
+    Some(Problem::at(
+        span,
+        format!("`{header}` begins {is}"),
+        format!("expected `{right}`"),
+    ))
+}
+
+/// A whole number that the TOML reader has no type for.
+fn too_large(message: &str, span: &Range<usize>) -> Option<Problem> {
+    let number = message
+        .strip_prefix("invalid value: integer `")
+        .or_else(|| message.strip_prefix("invalid type: integer `"))?;
+    let (number, rest) = number.split_once('`')?;
+    let large = rest.contains("128") || message.starts_with("invalid value");
+    large.then(|| {
+        let message = format!("the whole number {number} is too large");
+        Problem::at(span, message, "expected at most 9223372036854775807")
+    })
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use serde::Deserialize;
 
-use super::file_contacts::{ContactsFile, PropertyFile, SidesFile, ZoneFile};
+use super::file_contacts::{ContactsFile, PropertyFile, SideFile, ZoneFile};
+use super::file_grains::{BoxFile, GrainsFile};
 use super::value::{
-    Described, ListOr, Named, Number, Placed, Quantity, ValueOr, optional_table, table,
+    Described, ListOr, Named, Number, Placed, Quantity, ValueOr, optional_table, table, tables,
 };
 
 /// A scene file of kavics.
@@ -22,38 +23,38 @@ pub struct SceneFile {
     #[serde(rename = "box")]
     #[serde(default, deserialize_with = "optional_table")]
     pub container: Option<Placed<BoxFile>>,
-    /// How the grains are placed: exactly one of the tables.
+    /// One layer of grains.
     #[serde(default, deserialize_with = "optional_table")]
     pub grains: Option<Placed<GrainsFile>>,
-    /// Several layers of grains: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub layer: Option<Placed<serde::de::IgnoredAny>>,
+    /// Several layers of grains, from the bottom, in place of `grains`.
+    #[serde(default, deserialize_with = "tables")]
+    pub layer: Vec<Placed<GrainsFile>>,
     /// Which grains carry a contact.
     #[serde(default, deserialize_with = "optional_table")]
     pub contacts: Option<Placed<ContactsFile>>,
     /// Contact properties by name.
     #[serde(default)]
-    pub contact: Named<Placed<PropertyFile>>,
+    pub contact: Named<PropertyFile>,
     /// Which contact property where; a later zone wins.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub zone: Vec<Placed<ZoneFile>>,
-    /// The sides of the box that grains touch, by name; sides not named are absent.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub side: Option<Placed<SidesFile>>,
-    /// Freedoms of grains that never move.
+    /// The sides of the container that grains touch, by name; sides not named are absent.
     #[serde(default)]
+    pub side: Named<SideFile>,
+    /// Freedoms of grains that never move.
+    #[serde(default, deserialize_with = "tables")]
     pub support: Vec<Placed<SupportFile>>,
     /// Weight of the grains.
     #[serde(default, deserialize_with = "optional_table")]
     pub weight: Option<Placed<WeightFile>>,
     /// Prescribed motions.
-    #[serde(default, rename = "move")]
+    #[serde(default, rename = "move", deserialize_with = "tables")]
     pub moves: Vec<Placed<MoveFile>>,
     /// Forces on edges, grains and sides.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub load: Vec<Placed<LoadFile>>,
     /// The parts of the load path.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "tables")]
     pub stage: Vec<Placed<StageFile>>,
     /// How equilibria are found.
     #[serde(default, deserialize_with = "optional_table")]
@@ -67,119 +68,6 @@ pub struct SceneFile {
     /// Table to set beside the run.
     #[serde(default, deserialize_with = "optional_table")]
     pub compare: Option<Placed<CompareFile>>,
-}
-
-/// The container: a box whose lower left corner is the origin.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct BoxFile {
-    /// Width `[length]`.
-    pub width: Option<Number>,
-    /// Height `[length]`, or "fit": the box ends at the top of the highest grain.
-    pub height: Option<Number>,
-    /// Corners of a convex container: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub polygon: Option<Placed<serde::de::IgnoredAny>>,
-}
-
-/// How the grains are placed: exactly one of these.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct GrainsFile {
-    /// Rows of equal discs, each row in the gaps of the one below.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub hexagonal: Option<Placed<LatticeFile>>,
-    /// Rows of equal discs, each disc above one of the row below.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub square: Option<Placed<LatticeFile>>,
-    /// Discs that fall one after another and roll until they rest.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub dropped: Option<Placed<DroppedFile>>,
-    /// Discs from a table.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub listed: Option<Placed<ListedFile>>,
-}
-
-/// Regular rows of equal discs.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LatticeFile {
-    /// Radius `[length]`.
-    pub radius: Number,
-    /// Number of grains in each row from the bottom, or number of rows and length of the longest.
-    pub rows: Placed<ListOr<i64, RowCountFile>>,
-}
-
-/// Rows by their number.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RowCountFile {
-    /// Number of rows.
-    pub count: Placed<i64>,
-    /// Grains in the longest row, which is the lowest.
-    pub longest: Placed<i64>,
-}
-
-impl Described for RowCountFile {
-    const EXPECTED: &'static str =
-        "a list of row lengths such as `[5, 4, 5]`, or `{ count = 3, longest = 5 }`";
-}
-
-/// Grains that are dropped into the box.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct DroppedFile {
-    /// Number of grains; until the box is full when absent.
-    pub count: Option<Placed<i64>>,
-    /// Radius, or the limits between which it is uniform `[length]`.
-    pub radius: Option<Placed<ValueOr<RadiiFile>>>,
-    /// Sieve curve, in place of a radius.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub sieve: Option<Placed<SieveFile>>,
-    /// Each grain rests at the lowest place of so many drops; 1 when absent.
-    pub tries: Option<Placed<i64>>,
-}
-
-/// Radii between two limits.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct RadiiFile {
-    /// Smallest radius `[length]`.
-    pub from: Number,
-    /// Largest radius `[length]`.
-    pub to: Number,
-}
-
-impl Described for RadiiFile {
-    const EXPECTED: &'static str = "a radius, or `{ from = 0.5, to = 1.5 }`";
-}
-
-/// A sieve curve.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SieveFile {
-    /// Diameters, growing `[length]`.
-    pub diameter: Placed<Vec<Number>>,
-    /// Share of the mass with a smaller diameter, from 0 to 1.
-    pub passing: Placed<Vec<Number>>,
-    /// "disc": mass as diameter squared (when absent); "sphere": cubed.
-    pub mass: Option<Placed<String>>,
-}
-
-/// Grains from a table.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ListedFile {
-    /// A csv or parquet file with columns x, y, radius.
-    pub file: Placed<String>,
 }
 
 /// Freedoms of grains that never move.
@@ -199,7 +87,7 @@ pub struct SupportFile {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ChoiceFile {
-    /// Grains that touch an edge of the box: "left", "right", "bottom" or "top".
+    /// Grains that touch an edge of the box: "left", "right", "bottom" or "top"; of a polygon "0", "1", ….
     pub edge: Option<Placed<String>>,
     /// Grains by id.
     pub ids: Option<Placed<Vec<Placed<i64>>>>,
@@ -229,7 +117,7 @@ pub struct WeightFile {
 pub struct MoveFile {
     /// Name for stages.
     pub name: Placed<String>,
-    /// A side that moves: "left", "right", "bottom" or "top".
+    /// A side that moves: "left", "right", "bottom" or "top"; of a polygon "0", "1", ….
     pub side: Option<Placed<String>>,
     /// Grains that move.
     #[serde(default, deserialize_with = "optional_table")]
@@ -302,7 +190,7 @@ pub struct ForceFile {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StageFile {
     /// Name in the results.
-    pub name: Option<String>,
+    pub name: Option<Placed<String>>,
     /// Loads, moves and "weight" that this stage drives; all of them when absent.
     pub apply: Option<Placed<Vec<Placed<String>>>>,
     /// The factor at the end of each load step.

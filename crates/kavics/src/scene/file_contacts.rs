@@ -228,26 +228,7 @@ pub struct RangesFile {
     pub y: Option<Placed<Vec<Number>>>,
 }
 
-/// The sides of the box.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct SidesFile {
-    /// The left side.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub left: Option<Placed<SideFile>>,
-    /// The right side.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub right: Option<Placed<SideFile>>,
-    /// The floor.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub bottom: Option<Placed<SideFile>>,
-    /// The lid.
-    #[serde(default, deserialize_with = "optional_table")]
-    pub top: Option<Placed<SideFile>>,
-}
-
-/// A side of the box: a rigid body that grains touch.
+/// A side of the container: a rigid body that grains touch.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

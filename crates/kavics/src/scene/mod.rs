@@ -7,13 +7,17 @@ mod build_contacts;
 mod build_grains;
 mod build_loading;
 mod check_actions;
+mod check_box;
 mod check_choice;
 mod check_contacts;
 mod check_dropped;
 mod check_grains;
+mod check_layers;
 mod check_loading;
 mod check_property;
+mod check_rows;
 mod check_run;
+mod check_sizes;
 mod check_stages;
 mod check_strength;
 mod checker;
@@ -22,11 +26,14 @@ mod diagnostic;
 mod edge_load;
 mod file;
 mod file_contacts;
+mod file_grains;
+mod fitting;
 mod grain_list;
 mod loading_plan;
 mod named_file;
 mod rigid_motion;
 mod scatter;
+mod sides;
 mod unit;
 mod value;
 
@@ -47,6 +54,8 @@ pub struct Scene {
     pub seed: u64,
     /// Grains, sides, contacts, dual graph.
     pub assembly: Assembly,
+    /// Number of grains of each layer, from the bottom.
+    pub layers: Vec<usize>,
     /// Contact properties in the order of the scene file.
     pub properties: PerProperty<Property>,
     /// Supports, loads, stages.
@@ -69,8 +78,8 @@ pub struct Scene {
 
 /// Reads the file of a `listed` grain list that is not csv; the library itself knows no other format.
 ///
-/// Answers rows of (x, y, radius), or a sentence that says what is wrong with the file.
-pub type ReadGrains<'a> = dyn Fn(&Path) -> Result<Vec<[f64; 3]>, String> + 'a;
+/// The number is that of a frame, from 0, where the scene names one; otherwise the last frame is wanted. Answers rows of (x, y, radius), or a sentence that says what is wrong with the file.
+pub type ReadGrains<'a> = dyn Fn(&Path, Option<usize>) -> Result<Vec<[f64; 3]>, String> + 'a;
 
 impl Scene {
     /// Reads a scene file.
@@ -156,7 +165,7 @@ fn folder(path: &Path) -> &Path {
 fn parse_file(text: &str, name: &str) -> Result<file::SceneFile, SceneError> {
     toml::from_str(text).map_err(|error| {
         let mut problems = diagnostic::Problems::default();
-        problems.push(diagnostic::from_toml(&error));
+        problems.push(diagnostic::from_toml(&error, text));
         SceneError::Wrong(problems.render(text, name))
     })
 }

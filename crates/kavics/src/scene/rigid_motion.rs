@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
+use super::sides::side_called;
 use crate::assembly::{Assembly, Partner};
 use crate::equilibrium::{Freedom, Load};
 use crate::geometry::Vector;
@@ -122,8 +123,8 @@ fn side_adrift(
         checker.push(Problem::at(
             place,
             format!(
-                "nothing holds the {} side, which is loaded",
-                assembly.sides[side].name
+                "nothing holds {}, which is loaded",
+                side_called(&assembly.sides[side].name)
             ),
             "expected grains that touch it",
         ));

@@ -70,6 +70,33 @@ where
     table(deserializer).map(Some)
 }
 
+struct TablesVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for TablesVisitor<T> {
+    type Value = Vec<Placed<T>>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of tables")
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        let mut tables = Vec::new();
+        while let Some(Placed { value, span }) = list.next_element::<Placed<TableOnly<T>>>()? {
+            let value = value.0;
+            tables.push(Placed { value, span });
+        }
+        Ok(tables)
+    }
+}
+
+/// Tables that may stand any number of times, as `[[stage]]`.
+pub fn tables<'de, T, D>(deserializer: D) -> Result<Vec<Placed<T>>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    deserializer.deserialize_seq(TablesVisitor(PhantomData))
+}
+
 /// What is written where a number stands: a number, a number with a unit, or a word in place of a number.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(untagged))]
@@ -194,7 +221,7 @@ impl<'de, V: Deserialize<'de>, T: Deserialize<'de> + Described> Deserialize<'de>
 
 /// Tables with names of the user's choice, in the order of the file.
 #[derive(Clone, Debug)]
-pub struct Named<T>(pub Vec<(Placed<String>, T)>);
+pub struct Named<T>(pub Vec<(Placed<String>, Placed<T>)>);
 
 impl<T> Default for Named<T> {
     fn default() -> Self {
@@ -211,9 +238,11 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for NamedVisitor<T> {
         f.write_str("a table of tables, each with a name")
     }
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
-        let mut entries: Vec<(Placed<String>, T)> = Vec::new();
-        while let Some(entry) = map.next_entry()? {
-            entries.push(entry);
+        let mut entries = Vec::new();
+        while let Some((name, table)) = map.next_entry::<Placed<String>, Placed<TableOnly<T>>>()? {
+            let Placed { value, span } = table;
+            let value = value.0;
+            entries.push((name, Placed { value, span }));
         }
         entries.sort_by_key(|(name, _)| name.span.start);
         Ok(Named(entries))
