@@ -1,6 +1,7 @@
 //! Points, segments, discs, near pairs and the power diagram. Knows nothing of grains or contacts.
 
 mod container;
+mod cutting;
 mod embedding;
 mod faces;
 mod lifted;
