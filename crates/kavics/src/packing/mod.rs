@@ -10,6 +10,7 @@ pub mod rows;
 pub mod sieve;
 mod skyline;
 pub mod statistics;
+mod wanted;
 
 pub use dropped::{Dropped, Support, Supports};
 pub use error::PackingError;
