@@ -17,8 +17,8 @@ use super::file::SceneFile;
 use super::loading_plan::LoadingPlan;
 use super::rigid_motion;
 use super::unit::Dimension;
-use super::{ReadGrains, Scene};
-use crate::assembly::{Assembly, Contact, Partner};
+use super::{Pack, ReadGrains, Scene};
+use crate::assembly::{Assembly, Contact, Partner, box_sides};
 use crate::contact_law::Property;
 use crate::ids::{GrainId, Id, PerGrain};
 use crate::loading::{Action, Program, Stage};
@@ -64,7 +64,7 @@ pub fn grains(
     file: &SceneFile,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
-) -> Result<PlacedGrains, Checker> {
+) -> Result<Pack, Checker> {
     let mut checker = Checker::default();
     let seed = seed(file, &mut checker);
     let tolerance = check_contacts::touching_tolerance(file, &mut checker);
@@ -75,7 +75,13 @@ pub fn grains(
         }
         _ => None,
     };
-    placed.ok_or(checker)
+    let pack = |placed: PlacedGrains| Pack {
+        sides: box_sides(placed.width, placed.height, [false; 4]),
+        touching_tolerance: tolerance.unwrap_or_default() * placed.mean_radius,
+        wanted_curve: placed.wanted_curve,
+        grains: placed.grains,
+    };
+    placed.map(pack).ok_or(checker)
 }
 
 fn seed(file: &SceneFile, checker: &mut Checker) -> Option<u64> {
@@ -134,6 +140,7 @@ fn build(
         checker,
     )?;
     let tolerance = touching * placed.mean_radius;
+    let wanted_curve = placed.wanted_curve.clone();
     let assembly =
         build_contacts::assembly(&plan.contacts, placed, plan.thickness, plan.seed, checker)?;
     let loading = Loading {
@@ -157,6 +164,7 @@ fn build(
         seed: plan.seed,
         properties: plan.contacts.properties.map(property),
         assembly,
+        wanted_curve,
         program,
         settings: plan.run.settings,
         breakage: plan.run.breakage,

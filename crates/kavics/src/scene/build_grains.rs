@@ -25,6 +25,8 @@ pub struct PlacedGrains {
     pub height: f64,
     /// Mean radius, `[length]`.
     pub mean_radius: f64,
+    /// Sieve curve that the grains were to have, where the scene gives one.
+    pub wanted_curve: Option<SieveCurve>,
 }
 
 /// Places the grains and checks that they neither overlap nor leave the box.
@@ -60,6 +62,7 @@ pub fn place(
         width: plan.width,
         height: plan.height.unwrap_or(highest),
         mean_radius: mean,
+        wanted_curve: wanted_curve(&plan.source),
         grains,
     };
     if placed.height <= 0.0 {
@@ -87,12 +90,15 @@ fn packed(plan: &GrainsPlan, seed: u64) -> Result<PerGrain<Grain>, PackingError>
     }
 }
 
-fn dropped(
-    dropped: &DroppedPlan,
-    plan: &GrainsPlan,
-    seed: u64,
-) -> Result<PerGrain<Grain>, PackingError> {
-    let sizes = match &dropped.sizes {
+fn wanted_curve(source: &GrainSource) -> Option<SieveCurve> {
+    match source {
+        GrainSource::Dropped(dropped) => Some(sizes(&dropped.sizes).curve()),
+        GrainSource::Hexagonal(..) | GrainSource::Square(..) | GrainSource::Listed(_) => None,
+    }
+}
+
+fn sizes(plan: &SizesPlan) -> Sizes {
+    match plan {
         SizesPlan::Uniform(from, to) => Sizes::Uniform {
             from: *from,
             to: *to,
@@ -106,7 +112,15 @@ fn dropped(
             passing: passing.clone(),
             mass: if *sphere { Mass::Sphere } else { Mass::Disc },
         }),
-    };
+    }
+}
+
+fn dropped(
+    dropped: &DroppedPlan,
+    plan: &GrainsPlan,
+    seed: u64,
+) -> Result<PerGrain<Grain>, PackingError> {
+    let sizes = sizes(&dropped.sizes);
     let pack = match (dropped.count, plan.height) {
         (Some(count), _) => {
             let radii = sizes.radii(count, seed)?;
