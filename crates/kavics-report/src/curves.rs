@@ -3,9 +3,9 @@
 use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
-use crate::ReportError;
 use crate::plot::{Plot, Series, draw};
 use crate::tensor::{Principal, near};
+use crate::{ReportError, packing};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
@@ -16,6 +16,8 @@ pub(crate) struct Figure {
     pub(crate) title: String,
     pub(crate) svg: String,
     pub(crate) legend: Vec<LegendEntry>,
+    /// What stands under it.
+    pub(crate) note: String,
 }
 
 /// A line of a plot in its legend.
@@ -66,6 +68,11 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
     let over = Abscissa::of(steps)?;
     let groups = vec![
         Group {
+            heading: "Packing",
+            note: packing::NOTE,
+            figures: packing::figures(folder)?,
+        },
+        Group {
             heading: "Load and displacement",
             note: "For a load: its whole force over the mean displacement, in its direction, of what it acts on. \
                    For a move: the reaction over the displacement.",
@@ -105,18 +112,25 @@ fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figur
     let plot = Plot {
         x_label,
         y_label,
+        sizes: false,
         series,
     };
+    Figure {
+        title: title.to_owned(),
+        svg: draw(&plot),
+        legend: legend(series),
+        note: String::new(),
+    }
+}
+
+/// The names of lines.
+pub(crate) fn legend(series: &[Series]) -> Vec<LegendEntry> {
     let entry = |series: &Series| LegendEntry {
         name: series.name.clone(),
         colour: series.colour,
         dashed: series.dashed,
     };
-    Figure {
-        title: title.to_owned(),
-        svg: draw(&plot),
-        legend: series.iter().map(entry).collect(),
-    }
+    series.iter().map(entry).collect()
 }
 
 fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
@@ -137,6 +151,7 @@ fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
             .collect(),
         colour: 0,
         dashed: false,
+        marked: true,
     };
     Ok(distinct
         .into_iter()
@@ -159,6 +174,7 @@ fn column(
         points: over.with(&steps.numbers(column)?),
         colour,
         dashed: false,
+        marked: true,
     })
 }
 
@@ -220,6 +236,7 @@ fn fabric(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> 
             points: over.with(&principal.iter().map(read).collect::<Vec<_>>()),
             colour,
             dashed,
+            marked: true,
         };
         values.push(series(format!("{tensor}, larger"), false, &|p| p.larger));
         values.push(series(format!("{tensor}, smaller"), true, &|p| p.smaller));
