@@ -56,8 +56,8 @@ fn sizes(pack: &Pack, container: &Container) -> String {
          radius            {smallest:.digits$} to {largest:.digits$}, mean {mean:.digits$}\n\
          box               {:.digits$} wide, {:.digits$} high\n\
          highest           {:.digits$}\n\
-         packing fraction  {:.6} from the floor to the highest grain\n\
-         inside            {inside} {margin} largest radii off the sides, {} below the top\n",
+         packing fraction  {:.6}, from the floor to the highest grain\n\
+         inside            {inside}, {margin} largest radii off the sides, {} below the top\n",
         discs.len(),
         right - left,
         top - bottom,
@@ -153,7 +153,7 @@ fn coordination_table(pack: &Pack, touching: &[Touching]) -> String {
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
     let _ = writeln!(
         text,
-        "mean              {}\nwithout rattlers  {}, of which there are {}",
+        "mean              {}\nwithout rattlers  {} ({} grains have no contact)",
         shown(coordination.mean()),
         shown(coordination.mean_without_rattlers()),
         coordination.rattlers()

@@ -6,7 +6,7 @@ use crate::axis::Axis;
 use crate::plot::{LEFT, RIGHT, WIDTH, draw_abscissa, draw_heights, draw_labels, height, start};
 
 /// Numbers along the axis, at most.
-const NUMBERS: usize = 16;
+const NUMBERS: usize = 12;
 
 /// Share of its place that a bar takes.
 const BREADTH: f64 = 0.74;
@@ -23,6 +23,9 @@ pub(crate) fn draw(counts: &[usize], x_label: &str, y_label: &str) -> String {
         let middle = LEFT + place * (value as f64 + 0.5);
         if value % numbered == 0 {
             draw_abscissa(&mut svg, middle, &value.to_string(), "");
+        }
+        if count == 0 {
+            continue;
         }
         let top = height(&axis, count as f64);
         let _ = write!(

@@ -33,6 +33,8 @@ pub(crate) struct LegendEntry {
 pub(crate) struct Group {
     pub(crate) heading: &'static str,
     pub(crate) note: &'static str,
+    /// Whether they stand two in a row.
+    pub(crate) pairs: bool,
     pub(crate) figures: Vec<Figure>,
 }
 
@@ -70,22 +72,26 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
         Group {
             heading: "Packing",
             note: packing::NOTE,
+            pairs: true,
             figures: packing::figures(folder)?,
         },
         Group {
             heading: "Load and displacement",
             note: "For a load: its whole force over the mean displacement, in its direction, of what it acts on. \
                    For a move: the reaction over the displacement.",
+            pairs: false,
             figures: load_displacement(&folder.actions()?)?,
         },
         Group {
             heading: "Contacts",
             note: "",
+            pairs: false,
             figures: contacts(steps, &over)?,
         },
         Group {
             heading: "Parts of the stress",
             note: "Average stress of the window and its parts; tension is positive.",
+            pairs: false,
             figures: vec![
                 stress_parts(steps, &over, "xx")?,
                 stress_parts(steps, &over, "yy")?,
@@ -96,11 +102,13 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
             note: "Eigenvalues, direction of the larger one (from the x axis, counter-clockwise), and deviator \
                    (their difference) of the fabric, branch and contact tensors. Without a deviator there is no \
                    direction.",
+            pairs: false,
             figures: fabric(steps, &over)?,
         },
         Group {
             heading: "Energy",
             note: "Since the start of the run. The ledger error is external work less all it went into.",
+            pairs: false,
             figures: energies(steps, &over)?,
         },
     ];
@@ -113,6 +121,7 @@ fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figur
         x_label,
         y_label,
         sizes: false,
+        heights: 5.0,
         series,
     };
     Figure {

@@ -34,6 +34,8 @@ pub(crate) struct Plot<'a> {
     pub(crate) y_label: &'a str,
     /// Whether the horizontal axis is one of sizes, logarithmic where they are spread widely.
     pub(crate) sizes: bool,
+    /// About how many numbers the vertical axis has.
+    pub(crate) heights: f64,
     pub(crate) series: &'a [Series],
 }
 
@@ -62,7 +64,7 @@ pub(crate) fn draw(plot: &Plot<'_>) -> String {
         } else {
             Axis::over(x, 5.0)
         },
-        y: Axis::over(points().map(|point| point.1), 5.0),
+        y: Axis::over(points().map(|point| point.1), plot.heights),
     };
     let mut svg = start(plot.x_label, plot.y_label);
     draw_heights(&mut svg, &frame.y);

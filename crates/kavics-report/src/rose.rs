@@ -37,6 +37,9 @@ pub(crate) fn draw(rose: &Rose, fabric: SymmetricTensor) -> String {
     draw_directions(&mut svg);
     for (class, radius) in radii.iter().enumerate() {
         let middle = class as f64 * rose.width();
+        if *radius == 0.0 {
+            continue;
+        }
         for middle in [middle, middle + PI] {
             draw_sector(&mut svg, middle, rose.width(), radius * unit);
         }
@@ -77,7 +80,7 @@ fn draw_sector(svg: &mut String, middle: f64, width: f64, radius: f64) {
     );
     let _ = write!(
         svg,
-        "<path class=\"filled\" d=\"M0 0L{:.2} {:.2}A{radius:.2} {radius:.2} 0 0 0 {:.2} {:.2}Z\"/>",
+        "<path class=\"filled sector\" d=\"M0 0L{:.2} {:.2}A{radius:.2} {radius:.2} 0 0 0 {:.2} {:.2}Z\"/>",
         from.0, from.1, to.0, to.1
     );
 }
