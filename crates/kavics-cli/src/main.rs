@@ -9,6 +9,7 @@ mod origins;
 mod overrides;
 mod own_files;
 mod pack;
+mod pack_summary;
 mod run;
 mod scene_file;
 mod summary;

@@ -3,9 +3,7 @@
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
-use kavics::assembly::Grain;
-use kavics::ids::PerGrain;
-use kavics::scene::{Scene, SceneError, read_text};
+use kavics::scene::{Pack, Scene, SceneError, read_text};
 use kavics_report::ComparedTable;
 use kavics_results::read_grains;
 
@@ -30,7 +28,7 @@ pub fn read(arguments: &SceneArguments) -> Result<(Scene, Option<ComparedTable>)
 }
 
 /// Reads no more of the scene file than places the grains.
-pub fn place_grains(arguments: &SceneArguments) -> Result<PerGrain<Grain>, Failure> {
+pub fn place_grains(arguments: &SceneArguments) -> Result<Pack, Failure> {
     with_text(arguments, |text, name, folder| {
         Scene::place_grains(text, name, folder, &read_grains).map_err(Failure::Scene)
     })

@@ -262,6 +262,22 @@ fn check_says_what_would_run() {
 }
 
 #[test]
+fn a_pack_is_summed_up_in_eighty_columns() {
+    let dropped = "seed = 1\n[box]\nwidth = 40.0\nheight = \"fit\"\n[grains.dropped]\ncount = 400\n\
+                   sieve = { diameter = [1.0, 2.0, 4.0], passing = [0.0, 0.6, 1.0] }\n";
+    let mut all = String::new();
+    for scene in [BLOCK, dropped] {
+        let place = place_with(scene);
+        let output = kavics(place.path(), &["pack", "block.toml", "--summary"]);
+        assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+        all += &text(&output.stdout);
+        all.push('\n');
+    }
+    assert!(all.lines().all(|line| line.chars().count() <= 80));
+    insta::assert_snapshot!(all);
+}
+
+#[test]
 fn a_written_pack_can_be_listed() {
     let place = place_with(BLOCK);
     for file in ["pack.csv", "pack.parquet", "pack2.CSV"] {

@@ -3,9 +3,9 @@
 use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
-use crate::ReportError;
 use crate::plot::{Plot, Series, draw};
 use crate::tensor::{Principal, near};
+use crate::{ReportError, packing};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
@@ -16,6 +16,8 @@ pub(crate) struct Figure {
     pub(crate) title: String,
     pub(crate) svg: String,
     pub(crate) legend: Vec<LegendEntry>,
+    /// What stands under it.
+    pub(crate) note: String,
 }
 
 /// A line of a plot in its legend.
@@ -31,6 +33,8 @@ pub(crate) struct LegendEntry {
 pub(crate) struct Group {
     pub(crate) heading: &'static str,
     pub(crate) note: &'static str,
+    /// Whether they stand two in a row.
+    pub(crate) pairs: bool,
     pub(crate) figures: Vec<Figure>,
 }
 
@@ -66,19 +70,28 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
     let over = Abscissa::of(steps)?;
     let groups = vec![
         Group {
+            heading: "Packing",
+            note: packing::NOTE,
+            pairs: true,
+            figures: packing::figures(folder)?,
+        },
+        Group {
             heading: "Load and displacement",
             note: "For a load: its whole force over the mean displacement, in its direction, of what it acts on. \
                    For a move: the reaction over the displacement.",
+            pairs: false,
             figures: load_displacement(&folder.actions()?)?,
         },
         Group {
             heading: "Contacts",
             note: "",
+            pairs: false,
             figures: contacts(steps, &over)?,
         },
         Group {
             heading: "Parts of the stress",
             note: "Average stress of the window and its parts; tension is positive.",
+            pairs: false,
             figures: vec![
                 stress_parts(steps, &over, "xx")?,
                 stress_parts(steps, &over, "yy")?,
@@ -89,11 +102,13 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
             note: "Eigenvalues, direction of the larger one (from the x axis, counter-clockwise), and deviator \
                    (their difference) of the fabric, branch and contact tensors. Without a deviator there is no \
                    direction.",
+            pairs: false,
             figures: fabric(steps, &over)?,
         },
         Group {
             heading: "Energy",
             note: "Since the start of the run. The ledger error is external work less all it went into.",
+            pairs: false,
             figures: energies(steps, &over)?,
         },
     ];
@@ -105,18 +120,26 @@ fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figur
     let plot = Plot {
         x_label,
         y_label,
+        sizes: false,
+        heights: 5.0,
         series,
     };
+    Figure {
+        title: title.to_owned(),
+        svg: draw(&plot),
+        legend: legend(series),
+        note: String::new(),
+    }
+}
+
+/// The names of lines.
+pub(crate) fn legend(series: &[Series]) -> Vec<LegendEntry> {
     let entry = |series: &Series| LegendEntry {
         name: series.name.clone(),
         colour: series.colour,
         dashed: series.dashed,
     };
-    Figure {
-        title: title.to_owned(),
-        svg: draw(&plot),
-        legend: series.iter().map(entry).collect(),
-    }
+    series.iter().map(entry).collect()
 }
 
 fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
@@ -137,6 +160,7 @@ fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
             .collect(),
         colour: 0,
         dashed: false,
+        marked: true,
     };
     Ok(distinct
         .into_iter()
@@ -159,6 +183,7 @@ fn column(
         points: over.with(&steps.numbers(column)?),
         colour,
         dashed: false,
+        marked: true,
     })
 }
 
@@ -220,6 +245,7 @@ fn fabric(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> 
             points: over.with(&principal.iter().map(read).collect::<Vec<_>>()),
             colour,
             dashed,
+            marked: true,
         };
         values.push(series(format!("{tensor}, larger"), false, &|p| p.larger));
         values.push(series(format!("{tensor}, smaller"), true, &|p| p.smaller));

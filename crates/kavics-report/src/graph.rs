@@ -9,8 +9,8 @@ use std::fmt::Write;
 use kavics_results::{Columns, ResultsFolder};
 
 use crate::ReportError;
+use crate::axis::round_step;
 use crate::number::show;
-use crate::plot::round_step;
 
 /// Length of the picture's longer side, in its own units.
 const EXTENT: f64 = 10_000.0;

@@ -2,14 +2,18 @@
 //!
 //! In: a results folder. Out: an HTML file without scripts and without network.
 
+mod axis;
+mod bars;
 mod compared_table;
 mod comparison;
 mod curves;
 mod error;
 mod graph;
 mod number;
+mod packing;
 mod page;
 mod plot;
+mod rose;
 mod tensor;
 
 use std::path::{Path, PathBuf};

@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use crate::number::{show, tick};
+use crate::axis::Axis;
+use crate::number::show;
 
-const WIDTH: f64 = 400.0;
-const HEIGHT: f64 = 260.0;
-const LEFT: f64 = 74.0;
-const RIGHT: f64 = 24.0;
-const TOP: f64 = 12.0;
-const BOTTOM: f64 = 44.0;
+pub(crate) const WIDTH: f64 = 400.0;
+pub(crate) const HEIGHT: f64 = 260.0;
+pub(crate) const LEFT: f64 = 74.0;
+pub(crate) const RIGHT: f64 = 24.0;
+pub(crate) const TOP: f64 = 12.0;
+pub(crate) const BOTTOM: f64 = 44.0;
 
 /// Above this many points a series is a line alone.
 const MARKED: usize = 25;
@@ -22,6 +23,8 @@ pub(crate) struct Series {
     /// Colour, one of eight.
     pub(crate) colour: usize,
     pub(crate) dashed: bool,
+    /// Whether its points are marked where they are few.
+    pub(crate) marked: bool,
 }
 
 /// Lines over one horizontal axis.
@@ -29,71 +32,11 @@ pub(crate) struct Series {
 pub(crate) struct Plot<'a> {
     pub(crate) x_label: &'a str,
     pub(crate) y_label: &'a str,
+    /// Whether the horizontal axis is one of sizes, logarithmic where they are spread widely.
+    pub(crate) sizes: bool,
+    /// About how many numbers the vertical axis has.
+    pub(crate) heights: f64,
     pub(crate) series: &'a [Series],
-}
-
-/// A linear axis with ticks at round numbers.
-#[derive(Clone, Copy, Debug)]
-struct Axis {
-    low: f64,
-    high: f64,
-    step: f64,
-}
-
-impl Axis {
-    /// The axis over `values`, with about `count` ticks.
-    fn over(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
-        let finite = values.filter(|value| value.is_finite());
-        let mut low = finite.clone().fold(f64::INFINITY, f64::min);
-        let mut high = finite.fold(f64::NEG_INFINITY, f64::max);
-        if low > high {
-            (low, high) = (0.0, 1.0);
-        }
-        // What is near zero by comparison starts at zero, so that sizes can be compared.
-        if low > 0.0 && low < 0.5 * high {
-            low = 0.0;
-        } else if high < 0.0 && high > 0.5 * low {
-            high = 0.0;
-        }
-        // Rounding is no curve.
-        let least = 1e-9 * low.abs().max(high.abs());
-        if high - low <= least {
-            let half = if high == 0.0 { 0.5 } else { 0.1 * high.abs() };
-            (low, high) = (low - half, high + half);
-        }
-        let step = round_step((high - low) / count);
-        Self {
-            low: (low / step).floor() * step,
-            high: (high / step).ceil() * step,
-            step,
-        }
-    }
-
-    fn ticks(self) -> impl Iterator<Item = f64> {
-        let count = ((self.high - self.low) / self.step).round() as usize;
-        (0..=count).map(move |tick| {
-            let value = self.low + tick as f64 * self.step;
-            if value.abs() < 1e-9 * self.step {
-                0.0
-            } else {
-                value
-            }
-        })
-    }
-
-    fn share(self, value: f64) -> f64 {
-        (value - self.low) / (self.high - self.low)
-    }
-}
-
-/// 1, 2 or 5 times a power of ten, at least `rough`.
-pub(crate) fn round_step(rough: f64) -> f64 {
-    let power = 10f64.powf(rough.log10().floor());
-    let factor = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|factor| factor * power >= rough * (1.0 - 1e-9))
-        .unwrap_or(10.0);
-    factor * power
 }
 
 struct Frame {
@@ -107,23 +50,26 @@ impl Frame {
     }
 
     fn top(&self, y: f64) -> f64 {
-        HEIGHT - BOTTOM - self.y.share(y) * (HEIGHT - TOP - BOTTOM)
+        height(&self.y, y)
     }
 }
 
 /// The plot as an SVG element.
 pub(crate) fn draw(plot: &Plot<'_>) -> String {
     let points = || plot.series.iter().flat_map(|series| &series.points);
+    let x = points().map(|point| point.0);
     let frame = Frame {
-        x: Axis::over(points().map(|point| point.0), 5.0),
-        y: Axis::over(points().map(|point| point.1), 5.0),
+        x: if plot.sizes {
+            Axis::over_sizes(x, 5.0)
+        } else {
+            Axis::over(x, 5.0)
+        },
+        y: Axis::over(points().map(|point| point.1), plot.heights),
     };
-    let mut svg = format!(
-        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{} over {}\">",
-        escape(plot.y_label),
-        escape(plot.x_label)
-    );
-    draw_axes(&mut svg, &frame, plot);
+    let mut svg = start(plot.x_label, plot.y_label);
+    draw_heights(&mut svg, &frame.y);
+    draw_abscissas(&mut svg, &frame);
+    draw_labels(&mut svg, plot.x_label, plot.y_label);
     for (order, series) in plot.series.iter().enumerate() {
         // Lines on top are thinner, so that those under them still show.
         let width = (3.0 - 0.45 * order as f64).max(1.2);
@@ -133,30 +79,57 @@ pub(crate) fn draw(plot: &Plot<'_>) -> String {
     svg
 }
 
-fn draw_axes(svg: &mut String, frame: &Frame, plot: &Plot<'_>) {
-    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-    for y in frame.y.ticks() {
-        let at = frame.top(y);
-        let class = if y == 0.0 { "zero" } else { "grid" };
-        let label = tick(y, frame.y.step);
+/// The start of the element of a plot.
+pub(crate) fn start(x_label: &str, y_label: &str) -> String {
+    format!(
+        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{} over {}\">",
+        escape(y_label),
+        escape(x_label)
+    )
+}
+
+/// Lines across the plot with the numbers of the vertical axis.
+pub(crate) fn draw_heights(svg: &mut String, axis: &Axis) {
+    for tick in axis.ticks() {
+        let at = height(axis, tick.value);
+        let class = if tick.value == 0.0 { "zero" } else { "grid" };
         let _ = write!(
             svg,
-            "<path class=\"{class}\" d=\"M{LEFT} {at:.1}H{right}\"/>\
-             <text class=\"tick\" text-anchor=\"end\" x=\"{}\" y=\"{:.1}\">{label}</text>",
+            "<path class=\"{class}\" d=\"M{LEFT} {at:.1}H{}\"/>\
+             <text class=\"tick\" text-anchor=\"end\" x=\"{}\" y=\"{:.1}\">{}</text>",
+            WIDTH - RIGHT,
             LEFT - 7.0,
-            at + 3.5
+            at + 3.5,
+            tick.label
         );
     }
-    for x in frame.x.ticks() {
-        let at = frame.left(x);
-        let label = tick(x, frame.x.step);
-        let _ = write!(
-            svg,
-            "<path class=\"mark\" d=\"M{at:.1} {bottom}v5\"/>\
-             <text class=\"tick\" text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{label}</text>",
-            bottom + 17.0
-        );
+}
+
+/// Where a value of the vertical axis stands.
+pub(crate) fn height(axis: &Axis, value: f64) -> f64 {
+    HEIGHT - BOTTOM - axis.share(value) * (HEIGHT - TOP - BOTTOM)
+}
+
+fn draw_abscissas(svg: &mut String, frame: &Frame) {
+    for tick in frame.x.ticks() {
+        draw_abscissa(svg, frame.left(tick.value), &tick.label, "v5");
     }
+}
+
+/// A number of the horizontal axis, with a mark.
+pub(crate) fn draw_abscissa(svg: &mut String, at: f64, label: &str, mark: &str) {
+    let bottom = HEIGHT - BOTTOM;
+    let _ = write!(
+        svg,
+        "<path class=\"mark\" d=\"M{at:.1} {bottom}{mark}\"/>\
+         <text class=\"tick\" text-anchor=\"middle\" x=\"{at:.1}\" y=\"{}\">{label}</text>",
+        bottom + 17.0
+    );
+}
+
+/// The horizontal axis, and what both axes show.
+pub(crate) fn draw_labels(svg: &mut String, x_label: &str, y_label: &str) {
+    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
     let middle = f64::midpoint(LEFT, right);
     let _ = write!(
         svg,
@@ -164,9 +137,9 @@ fn draw_axes(svg: &mut String, frame: &Frame, plot: &Plot<'_>) {
          <text class=\"label\" text-anchor=\"middle\" x=\"{middle}\" y=\"{}\">{}</text>\
          <text class=\"label\" text-anchor=\"middle\" transform=\"translate(12 {}) rotate(-90)\">{}</text>",
         HEIGHT - 8.0,
-        escape(plot.x_label),
+        escape(x_label),
         f64::midpoint(TOP, bottom),
-        escape(plot.y_label)
+        escape(y_label)
     );
 }
 
@@ -187,7 +160,7 @@ fn draw_series(svg: &mut String, frame: &Frame, series: &Series, width: f64) {
         svg,
         "<path class=\"line c{colour}{dash}\" stroke-width=\"{width:.2}\" d=\"{path}\"/>"
     );
-    if series.points.len() > MARKED {
+    if !series.marked || series.points.len() > MARKED {
         return;
     }
     for &(x, y) in &series.points {
@@ -210,24 +183,4 @@ fn draw_series(svg: &mut String, frame: &Frame, series: &Series, width: f64) {
 pub(crate) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Axis, round_step};
-
-    #[test]
-    fn ticks_stand_at_round_numbers() {
-        let axis = Axis::over([0.0, 0.37].into_iter(), 5.0);
-        let ticks: Vec<f64> = axis.ticks().collect();
-        assert_eq!(ticks.len(), 5);
-        assert!((axis.high - 0.4).abs() < 1e-12);
-        assert!((round_step(0.074) - 0.1).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_constant_has_an_axis_around_it() {
-        let axis = Axis::over([3.0, 3.0].into_iter(), 5.0);
-        assert!(axis.low < 3.0 && axis.high > 3.0);
-    }
 }

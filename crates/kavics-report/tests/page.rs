@@ -6,6 +6,7 @@ mod block;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use kavics::packing::{Mass, SieveCurve};
 use kavics::scene::Scene;
 use kavics_report::Comparison;
 use kavics_results::ResultsFolder;
@@ -66,6 +67,56 @@ fn steps_around_the_first_breakage_are_drawn() {
     let page = page_of(place.path(), &block::scene(7, 5));
     assert!(page.contains("Load step 4<"));
     assert!(page.contains("Load step 5<small>load factor 1.8 · 3 broken"));
+}
+
+#[test]
+fn the_packing_stands_before_the_curves() {
+    let place = place();
+    let scene = Scene {
+        wanted_curve: Some(SieveCurve {
+            diameter: vec![1.0, 3.0],
+            passing: vec![0.0, 1.0],
+            mass: Mass::Sphere,
+        }),
+        ..block::scene(7, 5)
+    };
+    let page = page_of(place.path(), &scene);
+    let packing = page.find("<h2>Packing</h2>").expect("a section");
+    assert!(
+        packing
+            < page
+                .find("<h2>Load and displacement</h2>")
+                .expect("another")
+    );
+    for part in [
+        "<figcaption>Sieve curve",
+        "wanted</li>",
+        "mass grows as d³",
+        "<figcaption>Packing fraction over the height",
+        "<figcaption>Coordination",
+        "<figcaption>Contact normals",
+        "<ellipse",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // A hexagonal lattice has six directions; 32 unit discs stand in a box of 10 by 2 + 6·√3: 0.8112.
+    assert_eq!(page.matches("filled sector").count(), 6);
+    assert!(page.contains("0.8112 from the floor to the highest grain"));
+}
+
+#[test]
+fn results_that_do_not_know_their_container_have_no_packing_fraction() {
+    let place = place();
+    page_of(place.path(), &block::scene(7, 5));
+    let folder = place.path().join("block.results");
+    let path = folder.join("run.json");
+    let text = fs::read_to_string(&path).expect("a record");
+    let start = text.find(",\n  \"packing\"").expect("the last key");
+    fs::write(&path, format!("{}}}", &text[..start])).expect("room on the disk");
+    let path = kavics_report::write(&folder, None).expect("a report");
+    let page = fs::read_to_string(path).expect("a page");
+    assert!(page.contains("<figcaption>Sieve curve"));
+    assert!(!page.contains("over the height"));
 }
 
 #[test]

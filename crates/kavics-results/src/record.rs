@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::packing_record::PackingRecord;
+
 /// Version of the tables; rises when a column changes its meaning.
 pub const SCHEMA_VERSION: u32 = 1;
 
@@ -33,7 +35,7 @@ impl RunState {
 }
 
 /// What ran, and how it ended.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
     /// Version of kavics.
     pub version: String,
@@ -57,4 +59,7 @@ pub struct RunRecord {
     pub failure: Option<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Container and wanted sieve curve; none in the results of versions that did not keep them.
+    #[serde(default)]
+    pub packing: Option<PackingRecord>,
 }

@@ -18,6 +18,7 @@ use crate::events::{EventRow, event_columns};
 use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
+use crate::packing_record::PackingRecord;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{RECORDED, make_room};
 use crate::sides::{SideRow, side_columns};
@@ -366,6 +367,7 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         state: RunState::Running,
         failure: None,
         warnings: scene.warnings.clone(),
+        packing: Some(PackingRecord::of(scene)),
     }
 }
 

@@ -6,6 +6,8 @@ use std::fs;
 
 use kavics::ids::{ContactId, GrainId, Id, PerGrain};
 use kavics::measure::Tensor;
+use kavics::packing::{Mass, SieveCurve};
+use kavics::scene::Scene;
 use kavics_results::{
     Columns, Options, Recorded, Results, ResultsError, ResultsFolder, RunState, check_room,
     read_grains, write_grains, write_steps,
@@ -32,6 +34,29 @@ fn steps_has_the_columns_of_the_contract_in_their_order() {
         .map(|column| column.name)
         .collect();
     assert_eq!(names.join(" "), contract);
+}
+
+#[test]
+fn run_json_keeps_the_container_and_the_wanted_curve() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let curve = SieveCurve {
+        diameter: vec![1.0, 3.0],
+        passing: vec![0.0, 1.0],
+        mass: Mass::Sphere,
+    };
+    let scene = Scene {
+        wanted_curve: Some(curve.clone()),
+        ..block::scene(7, 5)
+    };
+    block::write(&folder, &scene);
+    let record = ResultsFolder::open(&folder).unwrap().record().unwrap();
+    let packing = record.packing.unwrap();
+    assert_eq!(packing.wanted_curve.map(SieveCurve::from), Some(curve));
+    let height = 2.0 + 6.0 * 3f64.sqrt();
+    for corner in [[0.0, 0.0], [10.0, 0.0], [10.0, height], [0.0, height]] {
+        assert!(packing.container.contains(&corner), "{corner:?}");
+    }
 }
 
 #[test]

@@ -308,10 +308,12 @@ fn grains_may_come_from_a_reader_of_the_callers() {
         "listed]\nfile = \"Cargo.toml\"",
     );
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let grains = Scene::place_grains(&text, "scene.toml", folder, &|_, _| {
+    let pack = Scene::place_grains(&text, "scene.toml", folder, &|_, _| {
         Ok(vec![[1.0, 1.0, 1.0], [3.0, 1.0, 1.0]])
-    });
-    assert_eq!(grains.unwrap().len(), 2);
+    })
+    .unwrap();
+    assert_eq!(pack.grains.len(), 2);
+    assert_eq!(pack.wanted_curve, None);
 }
 
 #[test]
@@ -326,8 +328,10 @@ fn dropped_grains_are_placed_alone() {
         )
         .unwrap()
     };
-    assert_eq!(place().len(), 50);
-    assert_eq!(place(), place());
+    assert_eq!(place().grains.len(), 50);
+    assert_eq!(place().grains, place().grains);
+    let wanted = place().wanted_curve.expect("radii are given");
+    assert_eq!((wanted.diameter[0], wanted.diameter[10]), (1.0, 3.0));
 }
 
 #[test]

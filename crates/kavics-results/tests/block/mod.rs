@@ -52,6 +52,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
             triangles: Vec::new(),
             thickness: 1.0,
         },
+        wanted_curve: None,
         properties: vec![mortar()].into(),
         program: Program {
             actions: vec![Action {

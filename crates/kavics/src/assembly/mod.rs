@@ -6,6 +6,7 @@ mod contact_graph;
 mod container;
 mod envelope;
 mod outer_face;
+mod touching;
 
 pub use contact_graph::{
     Between, ContactGraph, ContactPoint, DualLength, Shaping, Site, contact_graph,
@@ -13,6 +14,7 @@ pub use contact_graph::{
 pub use container::{box_sides, extents, middle, outside, overlaps, polygon_sides, twice_area};
 pub use envelope::{EnvelopePart, envelope};
 pub use outer_face::outer_grains;
+pub use touching::{Touching, container, touching};
 
 use crate::geometry::Vector;
 use crate::ids::{BodyId, GrainId, Id, PerContact, PerGrain, PerSide, PropertyId, SideId};

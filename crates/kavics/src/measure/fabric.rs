@@ -3,6 +3,7 @@
 //! Bojtár & Bagi (1989), eqs. 1–3, over the grains of the window and the active contacts of each, those with sides
 //! included: a contact within the window counts twice, one that leaves it and one with a side once.
 
+use crate::geometry::Vector;
 use crate::measure::half_contact::{HalfContact, half_contacts};
 use crate::measure::{Snapshot, SymmetricTensor, Window};
 
@@ -83,16 +84,36 @@ fn squared_length(contact: &HalfContact) -> f64 {
     contact.branch_length * contact.branch_length
 }
 
-/// Σ w n_i n_j / Σ w for each of several weights w.
+/// Fabric tensor of contacts that are given by their normals alone, each once.
+///
+/// ```math
+/// \varphi_{ij} = \frac{1}{M} \sum_c n_i^c n_j^c
+/// ```
+///
+/// [`fabric_tensor`] of all M contacts where none of them is with a side; none without a contact.
+pub fn fabric_of_normals(normals: impl Iterator<Item = Vector>) -> Option<SymmetricTensor> {
+    let [tensor] = weighted_mean(normals.map(|normal| (normal, [1.0])));
+    tensor
+}
+
+/// Σ w n_i n_j / Σ w over the contacts of a window, for each of several weights w.
 fn weighted<const N: usize>(
     snapshot: &Snapshot<'_>,
     window: &Window,
     weights: impl Fn(&HalfContact) -> [f64; N],
 ) -> [Option<SymmetricTensor>; N] {
+    let contacts = half_contacts(snapshot, window);
+    weighted_mean(contacts.map(|contact| (contact.normal, weights(&contact))))
+}
+
+/// Σ w n_i n_j / Σ w for each of several weights w.
+fn weighted_mean<const N: usize>(
+    normals: impl Iterator<Item = (Vector, [f64; N])>,
+) -> [Option<SymmetricTensor>; N] {
     let mut sums = [(SymmetricTensor::default(), 0.0); N];
-    half_contacts(snapshot, window).for_each(|contact| {
-        let directed = SymmetricTensor::square(contact.normal);
-        for ((tensor, total), weight) in sums.iter_mut().zip(weights(&contact)) {
+    normals.for_each(|(normal, weights)| {
+        let directed = SymmetricTensor::square(normal);
+        for ((tensor, total), weight) in sums.iter_mut().zip(weights) {
             *tensor += directed * weight;
             *total += weight;
         }

@@ -2,18 +2,27 @@
 //!
 //! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure. Sums run over contacts in the order of their
 //! ids. Bojtár & Bagi (1989), eqs. 1–13.
+//!
+//! What tells of contacts alone, before there is an equilibrium, takes their partners or normals instead:
+//! [`Coordination`], [`Rose`], [`fabric_of_normals`].
 
+mod coordination;
 mod fabric;
 mod graph_porosity;
 mod half_contact;
+mod rose;
 mod strain;
 mod stress;
 mod tensor;
 mod window;
 mod work;
 
-pub use fabric::{branch_tensor, contact_tensor, fabric_length_tensor, fabric_tensor};
+pub use coordination::Coordination;
+pub use fabric::{
+    branch_tensor, contact_tensor, fabric_length_tensor, fabric_of_normals, fabric_tensor,
+};
 pub use graph_porosity::{GraphPorosity, graph_porosity};
+pub use rose::{Rose, first_harmonic};
 pub use strain::strain;
 pub use stress::{
     StressPartition, average_stress, bending_stress, grain_stress, moment_asymmetry,

@@ -20,6 +20,7 @@ mod soft_discs;
 mod spread;
 pub mod statistics;
 pub mod target;
+mod wanted;
 
 pub use advancing_front::advancing_front;
 pub use dropped::{Bed, Dropped, Shape, Support, Supports};

@@ -17,7 +17,7 @@ use super::file::SceneFile;
 use super::loading_plan::LoadingPlan;
 use super::rigid_motion;
 use super::unit::Dimension;
-use super::{ReadGrains, Scene};
+use super::{Pack, ReadGrains, Scene};
 use crate::assembly::{Assembly, Contact, Partner};
 use crate::contact_law::Property;
 use crate::ids::{GrainId, Id, PerGrain};
@@ -64,7 +64,7 @@ pub fn grains(
     file: &SceneFile,
     folder: &Path,
     grain_lists: &ReadGrains<'_>,
-) -> Result<PlacedGrains, Checker> {
+) -> Result<Pack, Checker> {
     let mut checker = Checker::of(file);
     let seed = seed(file, &mut checker);
     let tolerance = check_contacts::touching_tolerance(file, &mut checker);
@@ -75,7 +75,13 @@ pub fn grains(
         }
         _ => None,
     };
-    placed.ok_or(checker)
+    let pack = |placed: PlacedGrains| Pack {
+        sides: placed.sides(&[]),
+        touching_tolerance: tolerance.unwrap_or_default() * placed.mean_radius,
+        wanted_curve: placed.wanted_curve,
+        grains: placed.grains,
+    };
+    placed.map(pack).ok_or(checker)
 }
 
 fn seed(file: &SceneFile, checker: &mut Checker) -> Option<u64> {
@@ -135,6 +141,7 @@ fn build(
     )?;
     let tolerance = touching * placed.mean_radius;
     let layers = placed.layers.clone();
+    let wanted_curve = placed.wanted_curve.clone();
     let assembly =
         build_contacts::assembly(&plan.contacts, placed, plan.thickness, plan.seed, checker)?;
     let loading = Loading {
@@ -159,6 +166,7 @@ fn build(
         layers,
         properties: plan.contacts.properties.map(property),
         assembly,
+        wanted_curve,
         program,
         settings: plan.run.settings,
         breakage: plan.run.breakage,

@@ -14,7 +14,7 @@ use super::named_file::named_file;
 use crate::assembly::{Grain, Side};
 use crate::geometry::{Container, Vector};
 use crate::ids::{PerGrain, PerSide};
-use crate::packing::{self, Bed, PackingError, Shape, random::Source};
+use crate::packing::{self, Bed, PackingError, Shape, SieveCurve, random::Source};
 
 /// Grains in their container.
 #[derive(Clone, Debug)]
@@ -29,6 +29,8 @@ pub struct PlacedGrains {
     pub highest: f64,
     /// Mean radius, `[length]`.
     pub mean_radius: f64,
+    /// Sieve curve that the grains were to have, where the scene gives one.
+    pub wanted_curve: Option<SieveCurve>,
 }
 
 impl PlacedGrains {
@@ -69,6 +71,7 @@ pub fn place(
         highest: highest(&grains, 0.0),
         mean_radius: grains.iter().map(|g| g.radius).sum::<f64>() / grains.len() as f64,
         container: plan.container.clone(),
+        wanted_curve: wanted_curve(&plan.layers, &layers, &grains),
         layers,
         grains: grains.into(),
     };
@@ -229,6 +232,26 @@ impl<'a> Filling<'a> {
         let length = top - self.base;
         let part = self.container.part(self.base, top);
         part.ok_or(PackingError::BoxLength { length })
+    }
+}
+
+/// The curve that the layers together were to have, if each was to have one.
+fn wanted_curve(plans: &[LayerPlan], counts: &[usize], grains: &[Grain]) -> Option<SieveCurve> {
+    let mut rest = grains;
+    let mut kinds = Vec::new();
+    for (plan, &count) in plans.iter().zip(counts) {
+        let own;
+        (own, rest) = rest.split_at(count);
+        let curve = plan.source.sizes()?.curve();
+        let mass = own
+            .iter()
+            .map(|g| curve.mass.of(2.0 * g.radius))
+            .sum::<f64>();
+        kinds.push((mass, curve));
+    }
+    match &mut kinds[..] {
+        [(_, curve)] => Some(curve.clone()),
+        _ => SieveCurve::mixture(&kinds),
     }
 }
 

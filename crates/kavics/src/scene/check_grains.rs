@@ -10,6 +10,7 @@ use super::checker::Checker;
 use super::diagnostic::Problem;
 use super::file_grains::{DroppedFile, FrontFile, GrainsFile, LatticeFile, ListedFile, TargetFile};
 use super::value::Placed;
+use crate::packing::Sizes;
 
 /// Where grains come from.
 #[derive(Clone, Debug)]
@@ -29,6 +30,16 @@ pub enum GrainSource {
 }
 
 impl GrainSource {
+    /// The sizes that its grains are to have, where they are not given one by one.
+    pub fn sizes(&self) -> Option<&Sizes> {
+        match self {
+            Self::Dropped(plan) => Some(&plan.sizes),
+            Self::AdvancingFront(plan) => Some(&plan.sizes),
+            Self::Target(plan) => Some(&plan.sizes),
+            Self::Hexagonal(..) | Self::Square(..) | Self::Listed(_) => None,
+        }
+    }
+
     /// What fills a layer up to its top; none where the number of grains or their places are given.
     pub fn fill(&self) -> Option<Fill<'_>> {
         match self {

@@ -39,11 +39,12 @@ mod value;
 
 use std::path::{Path, PathBuf};
 
-use crate::assembly::{Assembly, Grain};
+use crate::assembly::{Assembly, Grain, Side};
 use crate::contact_law::Property;
 use crate::equilibrium::Settings;
-use crate::ids::{GrainId, PerGrain, PerProperty};
+use crate::ids::{GrainId, PerGrain, PerProperty, PerSide};
 use crate::loading::{Breakage, LoadPath, Program};
+use crate::packing::SieveCurve;
 
 /// A scene, every name resolved, every number checked, grains placed.
 #[derive(Clone, Debug)]
@@ -56,6 +57,8 @@ pub struct Scene {
     pub assembly: Assembly,
     /// Number of grains of each layer, from the bottom.
     pub layers: Vec<usize>,
+    /// Sieve curve that the grains were to have; none where the scene gives none.
+    pub wanted_curve: Option<SieveCurve>,
     /// Contact properties in the order of the scene file.
     pub properties: PerProperty<Property>,
     /// Supports, loads, stages.
@@ -74,6 +77,19 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// The scene file's text, overrides included.
     pub text: String,
+}
+
+/// The grains of a scene in their container, before anything is known of contacts.
+#[derive(Clone, Debug)]
+pub struct Pack {
+    /// The grains.
+    pub grains: PerGrain<Grain>,
+    /// The sides of the container, none present.
+    pub sides: PerSide<Side>,
+    /// Largest gap of grains that touch, `[length]`.
+    pub touching_tolerance: f64,
+    /// Sieve curve that the grains were to have; none where the scene gives none.
+    pub wanted_curve: Option<SieveCurve>,
 }
 
 /// Reads the file of a `listed` grain list that is not csv; the library itself knows no other format.
@@ -120,11 +136,9 @@ impl Scene {
         name: &str,
         folder: &Path,
         grain_lists: &ReadGrains<'_>,
-    ) -> Result<PerGrain<Grain>, SceneError> {
+    ) -> Result<Pack, SceneError> {
         let file = parse_file(text, name)?;
-        build::grains(&file, folder, grain_lists)
-            .map(|placed| placed.grains)
-            .map_err(|checker| checker.error(text, name))
+        build::grains(&file, folder, grain_lists).map_err(|checker| checker.error(text, name))
     }
 
     /// The equilibria of this scene, one load step after the other.
