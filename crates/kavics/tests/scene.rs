@@ -7,6 +7,7 @@ use kavics::contact_law::{Law, StiffnessRule};
 use kavics::equilibrium::Freedom;
 use kavics::ids::{GrainId, Id, PropertyId};
 use kavics::scene::{Scene, SceneError};
+use proptest::prelude::*;
 
 fn parse(text: &str) -> Scene {
     read(text).unwrap_or_else(|error| panic!("{error}"))
@@ -561,4 +562,52 @@ fn one_layer_is_the_same_as_grains() {
     let rows = "[box]\npolygon = [[-2, 3], [2, 3], [2, 9], [-2, 9]]\n[grains.square]\nradius = 1\nrows = [2, 2]\n";
     assert_eq!(placed(rows)[0], [-1.0, 4.0, 1.0]);
     assert_eq!(placed(rows)[3], [1.0, 6.0, 1.0]);
+}
+
+/// Whether corners make a convex polygon: each triple of corners in a row turns as every triple in order does.
+fn is_convex(corners: &[(i32, i32)]) -> bool {
+    let turn = |a: usize, b: usize, c: usize| {
+        let at = |k: usize| corners[k % corners.len()];
+        let ((ax, ay), (bx, by), (cx, cy)) = (at(a), at(b), at(c));
+        ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).signum()
+    };
+    let number = corners.len();
+    let triples = (0..number)
+        .flat_map(|a| (a + 1..number).flat_map(move |b| (b + 1..number).map(move |c| (a, b, c))));
+    let sense = if number < 3 { 0 } else { turn(0, 1, 2) };
+    sense != 0 && triples.into_iter().all(|(a, b, c)| turn(a, b, c) == sense)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// What is taken is convex, what is convex is taken, and the power cells fill it.
+    #[test]
+    fn polygons_are_taken_if_and_only_if_they_are_convex(
+        corners in prop::collection::vec((-9_i32..9, -9_i32..9), 2..6),
+    ) {
+        let list: Vec<String> = corners.iter().map(|(x, y)| format!("[{x}, {y}]")).collect();
+        let text = format!(
+            "[box]\npolygon = [{}]\n[grains.dropped]\nradius = 0.05\ncount = 3\n\
+             [contact.a.cemented]\nstiffness.layer = {{ normal = 1, shear = 1 }}\n\
+             [[support]]\ngrains = {{ ids = [0, 1, 2] }}\nfix = [\"x\", \"y\", \"rotation\"]\n",
+            list.join(", ")
+        );
+        match read(&text) {
+            Ok(scene) => {
+                prop_assert!(is_convex(&corners), "{:?}", corners);
+                let next = corners.iter().cycle().skip(1);
+                let twice = corners.iter().zip(next).map(|((ax, ay), (bx, by))| ax * by - ay * bx);
+                let area = 0.5 * f64::from(twice.sum::<i32>().abs());
+                let cells: f64 = scene.assembly.cell_area.values().iter().sum();
+                prop_assert!((cells - area).abs() < 1e-9 * area, "{} {}", cells, area);
+            }
+            Err(error) => {
+                let told = error.to_string();
+                let narrow = ["error: the grains cannot be placed", "error: only"];
+                let of_grains = narrow.iter().any(|start| told.starts_with(start));
+                prop_assert_eq!(of_grains, is_convex(&corners), "{} {:?}", told, corners);
+            }
+        }
+    }
 }
