@@ -227,6 +227,16 @@ fn a_hexagon_under_pressure_has_that_stress_in_every_direction() {
     assert!((last.sides[0].0.1 - 2.0 * 3.577_350_269_189_626).abs() < 1e-9);
 }
 
+/// Every grain of a front but the first two touches two before it, and the front knows no direction.
+#[test]
+fn an_advancing_front_squeezed_evenly_has_an_even_stress() {
+    let run = done("advancing-front.toml");
+    let last = Tables::read(&run, 2);
+    assert!(last.contacts.len() >= 2 * last.grains.len() - 3);
+    let (xx, yy) = (run.steps("stress_xx")[1], run.steps("stress_yy")[1]);
+    assert!(xx < 0.0 && (xx - yy).abs() < 0.1 * xx.abs(), "{xx} {yy}");
+}
+
 #[test]
 fn a_hopper_carries_the_weight_of_its_grains() {
     let run = done("hopper.toml");

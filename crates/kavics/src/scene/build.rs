@@ -76,7 +76,7 @@ pub fn grains(
         _ => None,
     };
     let pack = |placed: PlacedGrains| Pack {
-        sides: placed.sides(&[]),
+        sides: placed.sides(&vec![false; checker.sides.count()]),
         touching_tolerance: tolerance.unwrap_or_default() * placed.mean_radius,
         wanted_curve: placed.wanted_curve,
         grains: placed.grains,

@@ -275,6 +275,7 @@ fn falls(direction: Vector) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn plan(corners: &[(f64, f64)]) -> BoxPlan {
         BoxPlan {
@@ -295,6 +296,25 @@ mod tests {
             assert_eq!(triangle.part(0.0, 4.0).unwrap().area(), 8.0);
             assert!(triangle.part(4.0, 5.0).is_none());
             assert!(triangle.part(3.0, 1.0).is_none());
+        }
+    }
+
+    proptest! {
+        /// A line parts a polygon into two that make it up.
+        #[test]
+        fn parts_add_up_to_the_whole(
+            x in prop::collection::vec(-9_i32..9, 3),
+            y in prop::collection::vec(-9_i32..9, 3),
+            line in -10_i32..10,
+        ) {
+            let corners: Vec<Vector> =
+                x.iter().zip(&y).map(|(x, y)| Vector::new(f64::from(*x), f64::from(*y))).collect();
+            prop_assume!(twice_area(&corners) != 0.0);
+            let triangle = BoxPlan { shape: ShapePlan::Polygon(corners), span: 0..0 };
+            let area = |low, high| triangle.part(low, high).map_or(0.0, |part| part.area());
+            let line = f64::from(line);
+            let (below, above, whole) = (area(-10.0, line), area(line, 10.0), area(-10.0, 10.0));
+            prop_assert!((below + above - whole).abs() < 1e-12 * whole, "{below} {above} {whole}");
         }
     }
 
