@@ -50,6 +50,22 @@ pub enum PackingError {
         /// Height of the box, `[length]`.
         height: f64,
     },
+    /// A grain is wider than a container is anywhere.
+    #[error("a grain of diameter {diameter} does not fit into a container of width {width}")]
+    ContainerTooNarrow {
+        /// Diameter of the widest grain, `[length]`.
+        diameter: f64,
+        /// Diameter of the largest circle in the container, `[length]`.
+        width: f64,
+    },
+    /// A container is full before all grains are placed.
+    #[error("{count} grains do not fit into the container, which is full with {fitted}")]
+    ContainerFull {
+        /// The grains wanted.
+        count: usize,
+        /// Those that found a place.
+        fitted: usize,
+    },
     /// A grain is to be placed at the lowest of zero places.
     #[error("a grain needs at least one try")]
     NoTries,

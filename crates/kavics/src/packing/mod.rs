@@ -3,14 +3,19 @@
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
 //! The box stands on the floor y = 0 and reaches from x = 0 to its width.
 
+pub mod advancing_front;
+mod cells;
 pub mod dropped;
 mod error;
+mod front;
 pub mod random;
 pub mod rows;
 pub mod sieve;
 mod skyline;
 pub mod statistics;
+mod waiting;
 
+pub use advancing_front::advancing_front;
 pub use dropped::{Dropped, Support, Supports};
 pub use error::PackingError;
 pub use random::{Purpose, Stream};
