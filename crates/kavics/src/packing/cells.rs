@@ -31,13 +31,13 @@ pub(super) struct Cells {
     placed: Vec<Placed>,
     /// The largest grains first.
     layers: Vec<Layer>,
-    /// Overlap that is rounding, `[length]`.
-    rounding: f64,
+    /// Overlap that is none, `[length]`.
+    allowance: f64,
 }
 
 impl Cells {
     /// No grains yet, but room for those of the given radii between two corners.
-    pub(super) fn new([low, high]: [Vector; 2], radii: &[f64], rounding: f64) -> Self {
+    pub(super) fn new([low, high]: [Vector; 2], radii: &[f64], allowance: f64) -> Self {
         let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
         for &radius in radii {
             (smallest, largest) = (smallest.min(radius), largest.max(radius));
@@ -50,7 +50,7 @@ impl Cells {
         Self {
             placed: Vec::with_capacity(radii.len()),
             layers: sizes.take_while(|&s| s >= smallest).map(layer).collect(),
-            rounding,
+            allowance,
         }
     }
 
@@ -78,10 +78,10 @@ impl Cells {
         number
     }
 
-    /// Shows `look` every grain that a disc overlaps, rounding aside, until it has seen enough (false).
+    /// Shows `look` every grain that a disc overlaps, the allowance aside, until it has seen enough (false).
     pub(super) fn overlapped(&self, disc: Grain, mut look: impl FnMut(u32, &Grain) -> bool) {
         let Grain { centre, radius } = disc;
-        let own = radius - self.rounding;
+        let own = radius - self.allowance;
         for layer in &self.layers {
             let reach = own + layer.largest;
             let columns = layer.column(centre.x - reach)..=layer.column(centre.x + reach);

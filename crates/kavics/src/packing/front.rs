@@ -26,6 +26,8 @@ const MUCH_LARGER: f64 = 3.0;
 const NEAR_SIDES: f64 = 3.0;
 /// How much farther from the middle than the next pocket a grain may come to rest, in its radii.
 const PATIENCE: f64 = 0.65;
+/// Sectors of a ring, for each width of a ring that it lies away from the middle and each quarter turn.
+const SECTORS: f64 = 0.25;
 /// A grain that overlaps so many others at once is in no pocket of its size.
 const MOST_OVERLAPPED: usize = 48;
 
@@ -37,9 +39,12 @@ pub(super) struct Place {
     left: u32,
 }
 
-/// Two grains and their left side, by the distance from the middle (its bits rise with it).
+/// Two grains and their left side, in the order of their turns and, within a turn, of the distance from the middle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Pocket {
+    /// Number of the ring, and of the sector in it.
+    turn: (u32, u32),
+    /// The bits of a positive number rise with it.
     distance: u64,
     right: u32,
     left: u32,
@@ -51,10 +56,12 @@ pub(super) struct Front<'a> {
     /// Where it grows from.
     pub(super) middle: Vector,
     pub(super) cells: Cells,
-    /// Overlap that is rounding, `[length]`.
+    /// How far a grain may leave the container by rounding, `[length]`.
     pub(super) rounding: f64,
     /// Radius by which pockets are put in order, and the smallest that they are opened for, `[length]`.
     pub(super) usual: f64,
+    /// Width of the rings that are filled sector by sector, `[length]`.
+    pub(super) ring_width: f64,
     pub(super) smallest: f64,
     pub(super) pockets: BinaryHeap<Reverse<Pocket>>,
 }
@@ -74,25 +81,58 @@ impl Front<'_> {
     pub(super) fn open(&mut self, right: u32, left: u32) {
         let ends = [self.cells.grain(right), self.cells.grain(left)];
         if let Some(centre) = touching(ends[0], ends[1], self.usual) {
-            let distance = self.distance(centre);
-            self.pockets.push(Reverse(Pocket {
-                distance,
+            let pocket = self.pocket(Place {
+                centre,
                 right,
                 left,
-            }));
+            });
+            self.pockets.push(Reverse(pocket));
+        }
+    }
+
+    /// The pocket of two grains, in which a grain would rest there.
+    fn pocket(&self, place: Place) -> Pocket {
+        let Place {
+            centre,
+            right,
+            left,
+        } = place;
+        let arm = centre - self.middle;
+        let distance = arm.length();
+        let ring = (distance / self.ring_width).floor();
+        // Rises with the angle from 0 to 4.
+        let slope = arm.y / (arm.x.abs() + arm.y.abs());
+        let angle = if arm.x < 0.0 {
+            3.0 - slope
+        } else {
+            1.0 + slope
+        };
+        let sector = angle * (ring * SECTORS).floor();
+        Pocket {
+            turn: (ring as u32, sector as u32),
+            distance: distance.to_bits(),
+            right,
+            left,
         }
     }
 
     /// Puts a pocket back whose grain would rest much farther out than the next one's. Whether it did.
     pub(super) fn put_off(&mut self, pocket: Pocket, place: Place, radius: f64) -> bool {
-        let distance = self.distance(place.centre);
+        let (right, left) = (pocket.right, pocket.left);
+        let later = self.pocket(Place {
+            right,
+            left,
+            ..place
+        });
         let Some(Reverse(next)) = self.pockets.peek() else {
             return false;
         };
         let far = f64::from_bits(next.distance) + PATIENCE * radius;
-        let is_later = distance > pocket.distance && f64::from_bits(distance) > far;
+        let is_farther = later.turn > next.turn
+            || later.turn == next.turn && f64::from_bits(later.distance) > far;
+        let is_later = later > pocket && is_farther;
         if is_later {
-            self.pockets.push(Reverse(Pocket { distance, ..pocket }));
+            self.pockets.push(Reverse(later));
         }
         is_later
     }
@@ -116,16 +156,22 @@ impl Front<'_> {
         }
     }
 
-    /// Whether a smaller grain may take a pocket in place of one of this radius that does not fit: near the sides, and
-    /// where the grain is much larger than those of the pocket.
-    pub(super) fn may_take_smaller(&self, pocket: Pocket, radius: f64) -> bool {
+    /// Below which radius another grain may take a pocket in place of one that does not fit: any smaller one near the
+    /// sides, and one that is not much larger than those of the pocket in place of one that is.
+    pub(super) fn may_fit(&self, pocket: Pocket, radius: f64) -> Option<f64> {
         let [right, left] = [pocket.right, pocket.left].map(|number| self.cells.grain(number));
         let end = if right.radius < left.radius {
             right
         } else {
             left
         };
-        radius > MUCH_LARGER * end.radius || self.container.depth(end.centre) < NEAR_SIDES * radius
+        let much_larger = MUCH_LARGER * end.radius;
+        let is_near_sides = self.container.depth(end.centre) < NEAR_SIDES * radius;
+        if is_near_sides && radius <= much_larger {
+            Some(radius)
+        } else {
+            (radius > much_larger).then_some(much_larger)
+        }
     }
 
     /// Where a grain comes to rest that is put into a pocket.
@@ -133,6 +179,7 @@ impl Front<'_> {
         let Pocket { right, left, .. } = pocket;
         let ends = [right, left].map(|number| *self.cells.grain(number));
         let centre = touching(&ends[0], &ends[1], radius)?;
+        // It would hardly roll back inside, and to look around a large grain takes time.
         if self.container.depth(centre) < 0.0 {
             return None;
         }
@@ -162,7 +209,8 @@ impl Front<'_> {
         let other = self.roll(&mut on_left, ahead_left);
         match (one, other) {
             (Some(one), Some(other)) => {
-                let is_nearer = self.distance(one.centre) <= self.distance(other.centre);
+                let distance = |place: Place| (place.centre - self.middle).length_squared();
+                let is_nearer = distance(one) <= distance(other);
                 Some(if is_nearer { one } else { other })
             }
             _ => one.or(other),
@@ -184,10 +232,6 @@ impl Front<'_> {
             });
         }
         None
-    }
-
-    fn distance(&self, centre: Vector) -> u64 {
-        (centre - self.middle).length().to_bits()
     }
 }
 

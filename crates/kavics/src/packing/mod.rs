@@ -1,4 +1,4 @@
-//! Placing grains: radii after a sieve curve, dropping, regular rows.
+//! Placing grains: radii after a sieve curve, dropping, an advancing front, regular rows.
 //!
 //! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
 //! The box stands on the floor y = 0 and reaches from x = 0 to its width.
@@ -12,6 +12,7 @@ pub mod random;
 pub mod rows;
 pub mod sieve;
 mod skyline;
+mod start;
 pub mod statistics;
 mod waiting;
 

@@ -1,7 +1,7 @@
 //! Radii in the order in which they come; a few wait together, so that a place too narrow for one may take a smaller one.
 
 /// How many wait together.
-pub(super) const TOGETHER: usize = 8;
+const TOGETHER: usize = 8;
 
 /// Radii that are not placed yet.
 pub(super) struct Waiting {
@@ -40,12 +40,12 @@ impl Waiting {
         self.together.is_empty()
     }
 
-    /// The radius whose turn it is, if `fits` has an answer for it; or else, where `or_smaller` allows it, the largest
-    /// smaller one. The turn goes on when a radius does not fit.
+    /// The radius whose turn it is, if `fits` has an answer for it; or else the largest that fits below the limit that
+    /// `or_below` tells, if it does. The turn goes on when a radius does not fit.
     pub(super) fn choose<T>(
         &mut self,
         mut fits: impl FnMut(f64) -> Option<T>,
-        or_smaller: impl Fn(f64) -> bool,
+        or_below: impl Fn(f64) -> Option<f64>,
     ) -> Option<Choice<T>> {
         let index = self.turn % self.together.len().max(1);
         let radius = *self.together.get(index)?;
@@ -57,11 +57,12 @@ impl Waiting {
             });
         }
         self.turn = index + 1;
-        if or_smaller(radius) {
-            self.largest(radius, fits)
-        } else {
-            None
-        }
+        self.largest(or_below(radius)?, fits)
+    }
+
+    /// Those that wait together.
+    pub(super) fn together(&self) -> &[f64] {
+        &self.together
     }
 
     /// Takes away what was chosen last.
@@ -110,7 +111,7 @@ mod tests {
     fn taken(radii: &[f64], room: f64, or_smaller: bool) -> Option<f64> {
         let mut waiting = Waiting::new(radii.to_vec(), 0);
         let fits = |r: f64| (r <= room).then_some(());
-        let chosen = waiting.choose(fits, |_| or_smaller)?;
+        let chosen = waiting.choose(fits, |radius| or_smaller.then_some(radius))?;
         waiting.take(chosen.index);
         assert_eq!(waiting.rest.len() + waiting.together.len(), radii.len() - 1);
         Some(chosen.radius)
@@ -146,7 +147,7 @@ mod tests {
                     asked.push(r);
                     None::<()>
                 },
-                |_| false,
+                |_| None,
             );
             assert!(nothing.is_none());
         }
