@@ -175,7 +175,7 @@ fn the_first_grain_slides_into_the_apex() {
 fn a_polygon_without_room_says_so() {
     let container = polygon(&[(0.0, 0.0), (4.0, 4.0), (-4.0, 4.0)]);
     let wide = drop(&bed(&container), &[2.0], 1, SEED).unwrap_err();
-    assert_eq!(wide, PackingError::PolygonTooNarrow { diameter: 4.0 });
+    assert_eq!(wide, PackingError::ContainerTooNarrow { diameter: 4.0 });
     let one = drop(&bed(&container), &[1.0], 1, SEED).unwrap();
     let full = Bed {
         resting: one.grains.values(),
@@ -216,7 +216,7 @@ proptest! {
                 assert_sound(&dropped, &container);
                 prop_assert_eq!(&dropped, &drop(&bed(&container), &radii, tries, seed).unwrap());
             }
-            Err(PackingError::PolygonTooNarrow { .. }) => {}
+            Err(PackingError::ContainerTooNarrow { .. }) => {}
             Err(other) => panic!("{other}"),
         }
     }

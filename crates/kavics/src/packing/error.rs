@@ -50,17 +50,19 @@ pub enum PackingError {
         /// Height of the box, `[length]`.
         height: f64,
     },
-    /// A grain is wider than the polygon.
-    #[error("a grain of diameter {diameter} does not fit into the polygon")]
-    PolygonTooNarrow {
-        /// Diameter of the widest grain, `[length]`.
-        diameter: f64,
-    },
     /// Not even one grain finds room beside those that lie there.
     #[error("there is no room for a grain of diameter {diameter}")]
     NoRoom {
         /// Diameter of the first grain, `[length]`.
         diameter: f64,
+    },
+    /// A container is full before all grains are placed.
+    #[error("{count} grains do not fit into the container, which is full with {fitted}")]
+    ContainerFull {
+        /// The grains wanted.
+        count: usize,
+        /// Those that found a place.
+        fitted: usize,
     },
     /// A grain is to be placed at the lowest of zero places.
     #[error("a grain needs at least one try")]

@@ -1,25 +1,16 @@
-//! Placing grains: radii after a sieve curve, dropping, regular rows, a target packing fraction.
+//! Placing grains: radii after a sieve curve, dropping, an advancing front, a target packing fraction, regular rows.
 //!
-//! In: sizes, a box and a seed. Out: grains that do not overlap, in the order of their ids.
-//! The box stands on the floor y = 0 and reaches from x = 0 to its width; a target is packed in any convex container.
+//! In: sizes, a container and a seed. Out: grains that do not overlap, in the order of their ids.
+//! A box stands on the floor y = 0 and reaches from x = 0 to its width.
 
 mod advancing_front;
 pub mod dropped;
 mod error;
-mod exchange;
-mod filling;
-mod partners;
 pub mod random;
-mod relaxation;
-mod rolling;
 pub mod rows;
-mod sides;
 pub mod sieve;
-mod skyline;
-mod soft_discs;
-mod spread;
 pub mod statistics;
-pub mod target;
+mod target;
 mod wanted;
 
 pub use advancing_front::advancing_front;

@@ -37,7 +37,7 @@ impl Sides {
             Shape::Polygon(container) => Self::of_polygon(container),
         };
         if sides.range(largest).is_none() {
-            return Err(PackingError::PolygonTooNarrow { diameter });
+            return Err(PackingError::ContainerTooNarrow { diameter });
         }
         Ok(sides)
     }

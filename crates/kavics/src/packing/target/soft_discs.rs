@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::assembly::Grain;
 use crate::geometry::{Container, HalfPlane, Vector};
-use crate::packing::partners::Partners;
+use crate::packing::target::partners::Partners;
 
 /// Discs that one task looks at; fixed, so that the sums do not depend on the number of threads.
 const DISCS_A_TASK: usize = 1024;

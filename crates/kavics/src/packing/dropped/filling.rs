@@ -6,9 +6,9 @@ use std::f64::consts::PI;
 
 use crate::assembly::Grain;
 use crate::geometry::{HalfPlane, Vector};
+use crate::packing::dropped::sides::clipped;
 use crate::packing::dropped::{drop_while_room, no_room};
 use crate::packing::random::Source;
-use crate::packing::sides::clipped;
 use crate::packing::{Bed, Dropped, MOST_GRAINS, PackingError, Shape, Sizes, check_box};
 
 /// About the share of the area that dropped grains cover.

@@ -3,7 +3,7 @@
 //! The discs move after Newton's law; where they move uphill, all stop. On the way down the time step grows and the
 //! velocities turn towards the pushes.
 
-use crate::packing::soft_discs::{SoftDiscs, Sums};
+use crate::packing::target::soft_discs::{SoftDiscs, Sums};
 
 /// Time steps, where overlap is the push and a small grain has the mass 1: longest, first, shortest.
 const STEPS: [f64; 3] = [0.5, 0.1, 0.02];

@@ -17,13 +17,18 @@
 //! sinks, so it comes to rest. This is the second model of Meakin & Jullien (1987): rolling on until a local minimum is
 //! reached; sides that slope are ours.
 
+mod filling;
+mod rolling;
+mod sides;
+mod skyline;
+
 use crate::assembly::Grain;
 use crate::geometry::Container;
 use crate::ids::{GrainId, PerGrain, SideId};
-use crate::packing::rolling::{MOST_MOVES, Pack};
+use crate::packing::dropped::rolling::{MOST_MOVES, Pack};
 use crate::packing::{PackingError, check_count, check_radius};
 
-pub use crate::packing::filling::fill;
+pub use crate::packing::dropped::filling::fill;
 
 /// What grains are dropped into.
 #[derive(Clone, Debug)]

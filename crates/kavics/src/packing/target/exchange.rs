@@ -4,8 +4,8 @@
 //! again in the order of the wishes, so they stay the same as a whole. A pack jams at a higher packing fraction
 //! where radii are free to move (Brito, Lerner & Wyart, 2018).
 
-use crate::packing::relaxation::Relaxation;
-use crate::packing::soft_discs::{SoftDiscs, Sums};
+use crate::packing::target::relaxation::Relaxation;
+use crate::packing::target::soft_discs::{SoftDiscs, Sums};
 
 /// Iterations between two exchanges.
 const ITERATIONS: usize = 50;

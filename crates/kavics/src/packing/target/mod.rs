@@ -4,15 +4,21 @@
 //! overlap (O'Hern, Silbert, Liu & Nagel, 2003). Discs are larger than the grains by a play: where no overlap of the
 //! discs is above it, the grains do not overlap. Where they would jam before, they exchange their radii.
 
+mod exchange;
+mod partners;
+mod relaxation;
+mod soft_discs;
+mod spread;
+
 use std::f64::consts::PI;
 
 use crate::assembly::Grain;
 use crate::geometry::{Container, Vector};
 use crate::ids::PerGrain;
-use crate::packing::exchange::densify;
-use crate::packing::relaxation::Relaxation;
-use crate::packing::soft_discs::{SoftDiscs, Sums};
-use crate::packing::spread::spread;
+use crate::packing::target::exchange::densify;
+use crate::packing::target::relaxation::Relaxation;
+use crate::packing::target::soft_discs::{SoftDiscs, Sums};
+use crate::packing::target::spread::spread;
 use crate::packing::{PackingError, Sizes};
 
 /// Play and iterations while the grains keep their radii.

@@ -3,9 +3,9 @@
 use crate::assembly::Grain;
 use crate::geometry::Vector;
 use crate::ids::GrainId;
+use crate::packing::dropped::sides::Sides;
+use crate::packing::dropped::skyline::{Resting, Skyline};
 use crate::packing::random::{Purpose, Source, Stream, stream};
-use crate::packing::sides::Sides;
-use crate::packing::skyline::{Resting, Skyline};
 use crate::packing::{Bed, PackingError, Support, Supports};
 
 /// Relative difference of places over the radius below which a stop counts as touched at the start of a motion.
