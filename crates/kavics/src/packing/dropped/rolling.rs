@@ -85,11 +85,8 @@ impl Pack {
         let largest = radii.iter().fold(0.0_f64, |a, &b| a.max(b));
         let sides = Sides::new(&bed.shape, largest)?;
         let resting = bed.resting.iter().map(|grain| grain.radius);
-        let all = || radii.iter().copied().chain(resting.clone());
-        let (smallest, largest) = all().fold((f64::INFINITY, 0.0_f64), |(low, high), radius| {
-            (low.min(radius), high.max(radius))
-        });
-        let mut skyline = Skyline::new(sides.extent(), smallest, largest, all().count());
+        let all = radii.iter().copied().chain(resting);
+        let mut skyline = Skyline::new(sides.extent(), all);
         for &grain in bed.resting {
             skyline.push(grain);
         }

@@ -12,8 +12,8 @@ use crate::ids::{GrainId, Id};
 pub(super) struct Resting {
     pub(super) grain: Grain,
     pub(super) id: GrainId,
-    /// Highest centre in its stack up to here.
-    highest: f64,
+    /// Highest centre in its stack up to here, rounded up.
+    highest: f32,
 }
 
 /// Grains of radii up to `largest`, by columns of equal width.
@@ -21,8 +21,9 @@ struct Level {
     largest: f64,
     left: f64,
     column_width: f64,
+    columns_a_length: f64,
     /// Highest centre of each column, kept apart so that most columns are dismissed from here.
-    highest: Vec<f64>,
+    highest: Vec<f32>,
     columns: Vec<Vec<Resting>>,
 }
 
@@ -30,6 +31,8 @@ struct Level {
 pub(super) struct Skyline {
     /// The largest grains first.
     levels: Vec<Level>,
+    /// The largest radius of each.
+    sizes: Vec<f64>,
     count: usize,
 }
 
@@ -39,14 +42,24 @@ const LEVEL_RATIO: f64 = 4.0;
 const COLUMN_WIDTH: f64 = 1.75;
 
 impl Skyline {
-    /// An empty container between two abscissas, for `count` grains with radii from `smallest` to `largest`.
-    pub(super) fn new(extent: [f64; 2], smallest: f64, largest: f64, count: usize) -> Self {
+    /// An empty container between two abscissas, for grains of these radii.
+    pub(super) fn new(extent: [f64; 2], radii: impl Iterator<Item = f64> + Clone) -> Self {
+        let limits = [f64::INFINITY, 0.0];
+        let [smallest, largest] = radii.clone().fold(limits, |[low, high], radius| {
+            [low.min(radius), high.max(radius)]
+        });
         let sizes = std::iter::successors(Some(largest), |size| Some(size / LEVEL_RATIO));
+        let sizes: Vec<f64> = sizes.take_while(|&size| size >= smallest).collect();
+        let mut counts = vec![0; sizes.len()];
+        for radius in radii {
+            counts[level_of(radius, &sizes)] += 1;
+        }
+        let levels = sizes.iter().zip(counts);
         Self {
-            levels: sizes
-                .take_while(|&size| size >= smallest)
-                .map(|size| Level::new(extent, size, count))
+            levels: levels
+                .map(|(&size, count)| Level::new(extent, size, count))
                 .collect(),
+            sizes,
             count: 0,
         }
     }
@@ -55,13 +68,8 @@ impl Skyline {
     pub(super) fn push(&mut self, grain: Grain) {
         let id = GrainId::from_index(self.count);
         self.count += 1;
-        let level = self
-            .levels
-            .iter_mut()
-            .rev()
-            .find(|level| grain.radius <= level.largest)
-            .expect("radii are within the range given at the start");
-        level.push(grain, id);
+        let level = level_of(grain.radius, &self.sizes);
+        self.levels[level].push(grain, id);
     }
 
     /// Shows `look` every grain that a grain of `radius` could touch with its centre between the abscissas
@@ -79,29 +87,40 @@ impl Skyline {
     }
 }
 
+/// The finest level that a grain belongs to.
+fn level_of(radius: f64, sizes: &[f64]) -> usize {
+    let level = sizes.iter().rposition(|&size| radius <= size);
+    level.expect("radii are those given at the start")
+}
+
 impl Level {
     fn new([left, right]: [f64; 2], largest: f64, count: usize) -> Self {
         let width = right - left;
         // A box that is wide beside its grains needs no more columns than grains.
         let most = 4.0 * count as f64 + 16.0;
         let columns = (width / (COLUMN_WIDTH * largest)).ceil().clamp(1.0, most);
+        // Stacks that grow by doubling would be copied; a little more than the mean is enough for most.
+        let expected = 1.125 * count as f64 / columns;
         Self {
             largest,
             left,
             column_width: width / columns,
-            highest: vec![f64::NEG_INFINITY; columns as usize],
-            columns: vec![Vec::new(); columns as usize],
+            columns_a_length: columns / width,
+            highest: vec![f32::NEG_INFINITY; columns as usize],
+            columns: (0..columns as usize)
+                .map(|_| Vec::with_capacity(expected as usize))
+                .collect(),
         }
     }
 
     fn column(&self, x: f64) -> usize {
         // The cast saturates.
-        (((x - self.left) / self.column_width) as usize).min(self.columns.len() - 1)
+        (((x - self.left) * self.columns_a_length) as usize).min(self.columns.len() - 1)
     }
 
     fn push(&mut self, grain: Grain, id: GrainId) {
         let column = self.column(grain.centre.x);
-        let highest = self.highest[column].max(grain.centre.y);
+        let highest = self.highest[column].max((grain.centre.y as f32).next_up());
         self.highest[column] = highest;
         self.columns[column].push(Resting { grain, id, highest });
     }
@@ -119,13 +138,13 @@ impl Level {
         let middle = self.column(0.5 * (from + to));
         let last = self.column(to + reach);
         for column in (middle..=last).chain((first..middle).rev()) {
-            if self.highest[column] + reach < bound {
+            if f64::from(self.highest[column]) + reach < bound {
                 continue;
             }
             let gap = self.gap(column, [from, to]);
             let rise = (reach * reach - gap * gap).max(0.0).sqrt();
             for resting in self.columns[column].iter().rev() {
-                if resting.highest + rise < bound {
+                if f64::from(resting.highest) + rise < bound {
                     break;
                 }
                 bound = look(resting);
