@@ -26,7 +26,7 @@ fn scene(count: usize) -> Scene {
     let text = text
         .replace("count = 1000000", &format!("count = {count}"))
         .replace("width = 1500.0", &format!("width = {:?}", width(count)));
-    let no_lists = |_: &Path| Err(String::new());
+    let no_lists = |_: &Path, _: Option<usize>| Err(String::new());
     Scene::parse(&text, "million", Path::new(""), &no_lists).expect("a right scene")
 }
 

@@ -1,3 +1,4 @@
+//! Times.
 use kavics::assembly::*;
 use kavics::ids::*;
 use kavics::packing::*;

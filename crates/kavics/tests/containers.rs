@@ -23,10 +23,10 @@ fn placed(text: &str) -> Vec<[f64; 3]> {
         let x = frame.map_or(0.0, |frame| frame as f64);
         Ok(vec![[x, 1.0, 0.5], [2.0, 1.0, 0.5], [3.0, 1.0, 0.5]])
     };
-    let grains = Scene::place_grains(text, "scene.toml", &folder, &lists);
-    let grains = grains.unwrap_or_else(|error| panic!("{error}"));
+    let pack = Scene::place_grains(text, "scene.toml", &folder, &lists);
+    let pack = pack.unwrap_or_else(|error| panic!("{error}"));
     let row = |g: &kavics::assembly::Grain| [g.centre.x, g.centre.y, g.radius];
-    grains.values().iter().map(row).collect()
+    pack.grains.values().iter().map(row).collect()
 }
 
 #[test]

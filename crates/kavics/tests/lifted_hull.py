@@ -16,7 +16,8 @@ lifted = np.column_stack([xy, (xy**2).sum(axis=1) - discs[:, 2] ** 2])
 hull = ConvexHull(lifted, qhull_options="Qt")
 lower = hull.equations[:, 2] < -1e-12
 # The plane z = a·x + b·y + c touches the paraboloid's power at the radical centre (a, b)/2.
-centre = -hull.equations[:, :2] / (2.0 * hull.equations[:, 2:3])
+centre = np.zeros((len(lower), 2))
+centre[lower] = -hull.equations[lower, :2] / (2.0 * hull.equations[lower, 2:3])
 
 for facet in np.flatnonzero(lower):
     for k, other in enumerate(hull.neighbors[facet]):

@@ -8,6 +8,7 @@ use kavics::assembly::{
 use kavics::geometry::Vector;
 use kavics::ids::{GrainId, PerGrain, PerSide};
 use kavics::measure::{Coordination, Rose, fabric_of_normals};
+use kavics::packing::Bed;
 use kavics::packing::dropped::drop;
 use kavics::packing::statistics::{quantile_diameters, sieve_curve, strips};
 use kavics::packing::{Mass, Sizes, rows};
@@ -23,7 +24,7 @@ fn dropped(
 ) -> (PerGrain<Grain>, PerSide<kavics::assembly::Side>) {
     let sizes = Sizes::Uniform { from: 0.5, to: 1.5 };
     let radii = sizes.radii(count, seed).unwrap();
-    let grains = drop(width, &radii, 1, None, seed).unwrap().grains;
+    let grains = drop(&Bed::empty_box(width), &radii, 1, seed).unwrap().grains;
     let tops = grains.values().iter().map(|g| g.centre.y + g.radius);
     let sides = box_sides(width, tops.fold(0.0, f64::max), [true; 4]);
     (grains, sides)
