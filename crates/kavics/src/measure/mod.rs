@@ -3,12 +3,15 @@
 //! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure. Sums run over contacts in the order of their
 //! ids. Bojtár & Bagi (1989), eqs. 1–13.
 
+mod enclosure;
 mod fabric;
+mod face_walk;
 mod graph_porosity;
 mod half_contact;
 mod strain;
 mod stress;
 mod tensor;
+mod void_cells;
 mod window;
 mod work;
 
@@ -20,6 +23,7 @@ pub use stress::{
     stress_partition,
 };
 pub use tensor::{SymmetricTensor, Tensor};
+pub use void_cells::{VoidCell, VoidCells, loop_orders, void_cells};
 pub use window::{Window, coordination_number, void_ratio, window_area};
 pub use work::{boundary_work, contact_mean_work, contact_work, macroscopic_work};
 
