@@ -515,14 +515,13 @@ proptest! {
     #[test]
     fn a_graph_that_loses_contacts_satisfies_eulers_relation((pack, _) in packs()) {
         let found = pack.cells();
-        let mut components = pack.components();
+        let components = pack.components();
         let mut linked: Vec<usize> = pack.active_pairs().flatten().collect();
         linked.sort_unstable();
         linked.dedup();
         let mut labels: Vec<usize> = linked.iter().map(|&grain| components[grain]).collect();
         labels.sort_unstable();
         labels.dedup();
-        components.clear();
         prop_assert_eq!(found.grains, linked.len());
         prop_assert_eq!(found.components, labels.len());
         prop_assert_eq!(found.contacts, pack.active_pairs().count());
@@ -545,7 +544,9 @@ proptest! {
         let found = pack.cells();
         let components = pack.components();
         let mut size = vec![0; components.len()];
-        components.iter().for_each(|&label| size[label] += 1);
+        for &label in &components {
+            size[label] += 1;
+        }
         let mut expected = vec![(0, 0); found.cells.len()];
         for grain in 0..components.len() {
             // The lowest id stands for its component.

@@ -36,17 +36,18 @@ struct Rows {
 }
 
 /// For each point, the half-edge that has it on its left and is the first to the left of it; none where there is no
-/// edge. A ray that runs through a node passes just above it.
+/// edge. A ray that runs through a node passes just above it. No edge is longer than `longest`.
 pub(super) fn nearest_to_the_left(
     points: &[Vector],
     graph: &Embedding,
     centres: &[Vector],
+    longest: f64,
 ) -> Vec<Option<u32>> {
     if points.is_empty() {
         return Vec::new();
     }
     let rows = Rows::new(centres);
-    let filled = rows.fill(points, graph, centres);
+    let filled = rows.fill(points, graph, centres, longest);
     let nearest = |&point: &Vector| nearest(&filled[rows.row(point.y)], point);
     points.iter().map(nearest).collect()
 }
@@ -76,26 +77,37 @@ impl Rows {
     }
 
     /// The edges of each row that one of the points lies in.
-    fn fill(&self, points: &[Vector], graph: &Embedding, centres: &[Vector]) -> Vec<Vec<Entry>> {
-        let mut wanted = vec![false; self.count];
-        for point in points {
-            wanted[self.row(point.y)] = true;
-        }
+    fn fill(
+        &self,
+        points: &[Vector],
+        graph: &Embedding,
+        centres: &[Vector],
+        longest: f64,
+    ) -> Vec<Vec<Entry>> {
+        let wanted = self.near(points, 0.0);
+        let near = self.near(points, longest);
         let mut rows = vec![Vec::new(); self.count];
         for node in 0..graph.nodes() as u32 {
+            let high = centres[node as usize];
+            if !near[self.row(high.y)] {
+                continue;
+            }
             for slot in graph.star(node) {
-                let half_edge = graph.half_edges()[slot as usize];
-                let (from, to) = (centres[node as usize], centres[half_edge.to as usize]);
+                let low = centres[graph.half_edges()[slot as usize].to as usize];
                 // The way back of this one is met at the other end.
-                if from.y > to.y {
-                    for row in (self.row(to.y)..=self.row(from.y)).filter(|&row| wanted[row]) {
-                        rows[row].push(Entry {
-                            left: from.x.min(to.x),
-                            reach: from.x.max(to.x),
-                            low: to,
-                            high: from,
-                            downward: slot,
-                        });
+                if high.y <= low.y {
+                    continue;
+                }
+                let entry = Entry {
+                    left: low.x.min(high.x),
+                    reach: low.x.max(high.x),
+                    low,
+                    high,
+                    downward: slot,
+                };
+                for row in self.row(low.y)..=self.row(high.y) {
+                    if wanted[row] {
+                        rows[row].push(entry);
                     }
                 }
             }
@@ -104,6 +116,21 @@ impl Rows {
             sort(row);
         }
         rows
+    }
+
+    /// Whether a row is within a distance of one of the points.
+    fn near(&self, points: &[Vector], distance: f64) -> Vec<bool> {
+        let mut begin = vec![0_i64; self.count + 1];
+        for point in points {
+            begin[self.row(point.y - distance)] += 1;
+            begin[self.row(point.y + distance) + 1] -= 1;
+        }
+        let mut covered = 0;
+        let count = |change: i64| {
+            covered += change;
+            covered > 0
+        };
+        begin[..self.count].iter().copied().map(count).collect()
     }
 }
 
@@ -174,7 +201,7 @@ mod tests {
             let half_edge = graph.half_edges()[slot as usize];
             (graph.half_edges()[half_edge.twin as usize].to, half_edge.to)
         };
-        let found = nearest_to_the_left(&points, &graph, &centres);
+        let found = nearest_to_the_left(&points, &graph, &centres, 5.0);
         found.into_iter().map(|slot| slot.map(ends)).collect()
     }
 

@@ -3,7 +3,7 @@
 //! Bojtár & Bagi (1989), eqs. 1–3, over the grains of the window and the active contacts of each, those with sides
 //! included: a contact within the window counts twice, one that leaves it and one with a side once.
 
-use crate::measure::half_contact::{HalfContact, half_contacts};
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 use crate::measure::{Snapshot, SymmetricTensor, Window};
 
 /// The four readings of where contacts point.
@@ -15,16 +15,24 @@ pub(super) struct FabricTensors {
     pub contact: Option<SymmetricTensor>,
 }
 
-/// All four in one pass.
-pub(super) fn fabric_tensors(snapshot: &Snapshot<'_>, window: &Window) -> FabricTensors {
-    let [fabric, fabric_length, branch, contact] = weighted(snapshot, window, |c| {
-        [1.0, squared_length(c), c.branch_length, c.dual_length]
-    });
-    FabricTensors {
-        fabric,
-        fabric_length,
-        branch,
-        contact,
+/// The sums of all four.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FabricSums(Weighted<4>);
+
+impl FabricSums {
+    pub fn add(&mut self, c: &HalfContact) {
+        let weights = [1.0, squared_length(c), c.branch_length, c.dual_length];
+        self.0.add(c, weights);
+    }
+
+    pub fn tensors(self) -> FabricTensors {
+        let [fabric, fabric_length, branch, contact] = self.0.tensors();
+        FabricTensors {
+            fabric,
+            fabric_length,
+            branch,
+            contact,
+        }
     }
 }
 
@@ -89,13 +97,35 @@ fn weighted<const N: usize>(
     window: &Window,
     weights: impl Fn(&HalfContact) -> [f64; N],
 ) -> [Option<SymmetricTensor>; N] {
-    let mut sums = [(SymmetricTensor::default(), 0.0); N];
-    half_contacts(snapshot, window).for_each(|contact| {
+    let mut sums = Weighted::default();
+    each_half_contact(snapshot, window, |contact| {
+        sums.add(contact, weights(contact));
+    });
+    sums.tensors()
+}
+
+/// Σ w n_i n_j and Σ w for each of several weights w.
+#[derive(Clone, Copy, Debug)]
+struct Weighted<const N: usize>([(SymmetricTensor, f64); N]);
+
+impl<const N: usize> Default for Weighted<N> {
+    fn default() -> Self {
+        Self([(SymmetricTensor::default(), 0.0); N])
+    }
+}
+
+impl<const N: usize> Weighted<N> {
+    fn add(&mut self, contact: &HalfContact, weights: [f64; N]) {
         let directed = SymmetricTensor::square(contact.normal);
-        for ((tensor, total), weight) in sums.iter_mut().zip(weights(&contact)) {
+        for ((tensor, total), weight) in self.0.iter_mut().zip(weights) {
             *tensor += directed * weight;
             *total += weight;
         }
-    });
-    sums.map(|(tensor, total)| (total > 0.0).then(|| tensor * (1.0 / total)))
+    }
+
+    fn tensors(self) -> [Option<SymmetricTensor>; N] {
+        let ratio =
+            |(tensor, total): (SymmetricTensor, f64)| (total > 0.0).then(|| tensor * (1.0 / total));
+        self.0.map(ratio)
+    }
 }

@@ -1,10 +1,9 @@
 //! Walks along the faces of the contact graph, and what each face is like.
 
-use std::f64::consts::TAU;
-
 use crate::assembly::Grain;
 use crate::geometry::{Embedding, HalfEdge, Vector};
 use crate::measure::SymmetricTensor;
+use crate::measure::angle::Angles;
 
 /// No walk has passed here yet.
 const UNSEEN: u32 = u32::MAX;
@@ -16,10 +15,9 @@ const UNSEEN: u32 = u32::MAX;
 pub(super) struct Walk {
     /// The half-edge it starts with.
     pub first_slot: u32,
-    /// Whether it goes around a component, so that the face lies outside.
-    pub outer: bool,
-    /// The leftmost of its nodes, of several the lowest.
-    pub leftmost: u32,
+    /// The leftmost of its nodes, of several the lowest; none unless it goes around a component, so that the face
+    /// lies outside.
+    pub leftmost: Option<u32>,
     /// The node that the moment refers to.
     pub origin: Vector,
     /// Edges with another face on their other side.
@@ -40,8 +38,11 @@ pub(super) struct Walker<'a> {
     graph: &'a Embedding,
     centres: &'a [Vector],
     grains: &'a [Grain],
+    angles: Angles,
     /// Number of the walk through each half-edge.
     pub walk_of_slot: Vec<u32>,
+    /// Squared length of the longest edge met, `[length²]`.
+    pub longest_squared: f64,
 }
 
 impl<'a> Walker<'a> {
@@ -50,7 +51,9 @@ impl<'a> Walker<'a> {
             graph,
             centres,
             grains,
+            angles: Angles::new(),
             walk_of_slot: vec![UNSEEN; graph.half_edges().len()],
+            longest_squared: 0.0,
         }
     }
 
@@ -60,7 +63,12 @@ impl<'a> Walker<'a> {
         for node in 0..self.graph.nodes() as u32 {
             for slot in self.graph.star(node) {
                 if self.walk_of_slot[slot as usize] == UNSEEN {
-                    take(self.walk(node, slot, number));
+                    let mut walk = self.walk(node, slot, number);
+                    // Rounding cannot make so much of an area that is negative or none.
+                    if walk.order == 0 || walk.area <= 1e-6 * walk.edges.trace() {
+                        walk.leftmost = self.leftmost_of_outer(node, slot);
+                    }
+                    take(walk);
                     number += 1;
                 }
             }
@@ -72,23 +80,21 @@ impl<'a> Walker<'a> {
         let mut walk = Walk {
             first_slot,
             origin,
-            leftmost: node,
             ..Walk::default()
         };
         let (mut slot, mut from, mut start) = (first_slot, node, Vector::default());
-        let mut arriving = self.arriving(node, first_slot);
+        let mut back = self.back(node, first_slot);
         loop {
             let HalfEdge { to, twin } = self.graph.half_edges()[slot as usize];
             let end = self.centres[to as usize] - origin;
             let edge = end - start;
-            let last_of_star = slot + 1 == self.graph.star(from).end;
-            walk.see(from, last_of_star, self.centres);
             let radius = self.grains[from as usize].radius;
-            walk.solid += 0.5 * radius * radius * corner(edge, -arriving);
+            walk.solid += radius * radius * self.angles.between(edge, back);
             let doubled = start.cross(end);
-            walk.area += 0.5 * doubled;
-            walk.moment = walk.moment + (start + end) * (doubled / 6.0);
+            walk.area += doubled;
+            walk.moment = walk.moment + (start + end) * doubled;
             let square = SymmetricTensor::square(edge);
+            self.longest_squared = self.longest_squared.max(square.trace());
             // An edge that is met from both sides leads nowhere, and is taken off again.
             if self.walk_of_slot[twin as usize] == number {
                 walk.order -= 1;
@@ -98,15 +104,19 @@ impl<'a> Walker<'a> {
                 walk.edges += square;
             }
             self.walk_of_slot[slot as usize] = number;
-            (start, arriving, from, slot) = (end, edge, to, self.graph.next(slot));
+            (start, back, from, slot) = (end, -edge, to, self.graph.next(slot));
             if slot == first_slot {
-                return walk;
+                break;
             }
         }
+        walk.area *= 0.5;
+        walk.solid *= 0.5;
+        walk.moment = walk.moment * (1.0 / 6.0);
+        walk
     }
 
-    /// The edge by which a walk comes to the node from where it goes on along `slot`.
-    fn arriving(&self, node: u32, slot: u32) -> Vector {
+    /// From a node to where a walk comes from that goes on along `slot`.
+    fn back(&self, node: u32, slot: u32) -> Vector {
         let star = self.graph.star(node);
         let after = if slot + 1 == star.end {
             star.start
@@ -114,44 +124,30 @@ impl<'a> Walker<'a> {
             slot + 1
         };
         let before = self.graph.half_edges()[after as usize].to;
-        self.centres[node as usize] - self.centres[before as usize]
+        self.centres[before as usize] - self.centres[node as usize]
     }
-}
 
-impl Walk {
-    /// Meets a node; of a star sorted from −π to π, the direction −x lies after the last half-edge.
+    /// The leftmost node of a walk, if the walk goes around a component.
     ///
-    /// Left of the leftmost node of a walk there is no edge of its component: if the walk has that direction in its
-    /// corner there, its face lies around the component.
-    fn see(&mut self, node: u32, last_of_star: bool, centres: &[Vector]) {
-        if node == self.leftmost {
-            self.outer |= last_of_star;
-            return;
+    /// Left of the leftmost node of a walk there is no edge of its component: if the walk has the direction −x in its
+    /// corner there, its face lies around the component. Stars run from −π to π, so that corner follows their last
+    /// half-edge.
+    fn leftmost_of_outer(&self, node: u32, first_slot: u32) -> Option<u32> {
+        let (mut leftmost, mut outer) = (node, false);
+        let (mut slot, mut from) = (first_slot, node);
+        loop {
+            let (new, old) = (self.centres[from as usize], self.centres[leftmost as usize]);
+            if new.x < old.x || new.x == old.x && new.y < old.y {
+                (leftmost, outer) = (from, false);
+            }
+            outer |= from == leftmost && slot + 1 == self.graph.star(from).end;
+            (from, slot) = (
+                self.graph.half_edges()[slot as usize].to,
+                self.graph.next(slot),
+            );
+            if slot == first_slot {
+                return outer.then_some(leftmost);
+            }
         }
-        let (new, old) = (centres[node as usize], centres[self.leftmost as usize]);
-        if new.x < old.x || new.x == old.x && new.y < old.y {
-            (self.leftmost, self.outer) = (node, last_of_star);
-        }
-    }
-}
-
-/// Angle from one direction to another, counter-clockwise, in (0, 2π].
-fn corner(from: Vector, to: Vector) -> f64 {
-    let angle = libm::atan2(from.cross(to), from.dot(to));
-    if angle > 0.0 { angle } else { angle + TAU }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
-
-    #[test]
-    fn corners_are_counted_counter_clockwise_up_to_a_whole_turn() {
-        let (right, up) = (Vector::new(2.0, 0.0), Vector::new(0.0, 3.0));
-        assert_eq!(corner(right, up), FRAC_PI_2);
-        assert_eq!(corner(up, right), TAU - FRAC_PI_2);
-        assert_eq!(corner(right, -right), PI);
-        assert_eq!(corner(up, up), TAU);
     }
 }

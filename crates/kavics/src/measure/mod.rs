@@ -3,6 +3,7 @@
 //! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure. Sums run over contacts in the order of their
 //! ids. Bojtár & Bagi (1989), eqs. 1–13.
 
+mod angle;
 mod enclosure;
 mod fabric;
 mod face_walk;
@@ -126,13 +127,18 @@ pub fn measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
     if window.grains().is_empty() {
         return Measures::default();
     }
-    let porosity = graph_porosity(snapshot, window);
-    let directions = fabric::fabric_tensors(snapshot, window);
-    let stress = stress_partition(snapshot, window);
     let strain = strain(snapshot, window);
+    let area = window_area(snapshot, window);
+    let mut sums = Sums::new(snapshot.assembly.grains.len());
+    half_contact::each_half_contact(snapshot, window, |contact| {
+        sums.add(snapshot, window, strain, contact);
+    });
+    let porosity = sums.porosity.over(area);
+    let directions = sums.fabric.tensors();
+    let stress = sums.stress.over(area * snapshot.assembly.thickness);
     Measures {
-        window_area: window_area(snapshot, window),
-        coordination_number: coordination_number(snapshot, window),
+        window_area: area,
+        coordination_number: window::contacts_a_grain(sums.contacts, window),
         void_ratio: void_ratio(snapshot, window),
         graph_porosity: porosity.map(|p| p.once),
         graph_porosity_printed: porosity.map(|p| p.printed),
@@ -142,10 +148,50 @@ pub fn measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
         contact: directions.contact,
         stress,
         strain,
-        contact_work: Some(contact_work(snapshot, window)),
+        contact_work: Some(sums.contact_work),
         macroscopic_work: stress
             .zip(strain)
             .map(|(stress, e)| macroscopic_work(snapshot, window, stress.total, e)),
-        boundary_work: strain.map(|e| boundary_work(snapshot, window, e)),
+        boundary_work: strain.map(|e| work::work_of_loads(snapshot, window, e) + sums.work_across),
+    }
+}
+
+/// The sums of all measures, so that one pass over the contacts gives them.
+struct Sums {
+    contacts: usize,
+    fabric: fabric::FabricSums,
+    porosity: graph_porosity::PorositySums,
+    stress: stress::StressSums,
+    contact_work: f64,
+    work_across: f64,
+}
+
+impl Sums {
+    fn new(grains: usize) -> Self {
+        Self {
+            contacts: 0,
+            fabric: fabric::FabricSums::default(),
+            porosity: graph_porosity::PorositySums::default(),
+            stress: stress::StressSums::new(grains),
+            contact_work: 0.0,
+            work_across: 0.0,
+        }
+    }
+
+    fn add(
+        &mut self,
+        snapshot: &Snapshot<'_>,
+        window: &Window,
+        strain: Option<Tensor>,
+        contact: &half_contact::HalfContact,
+    ) {
+        self.contacts += 1;
+        self.fabric.add(contact);
+        self.porosity.add(contact);
+        self.stress.add(contact);
+        self.contact_work += work::half_of_work(snapshot, window, contact);
+        if let Some(e) = strain {
+            self.work_across += work::work_across(snapshot, window, e, contact);
+        }
     }
 }

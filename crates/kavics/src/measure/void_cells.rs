@@ -82,6 +82,7 @@ pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
     };
     let mut outlines = Vec::new();
     walker.walk_all(|walk| outlines.extend(found.take(walk)));
+    let longest = walker.longest_squared.sqrt();
     found.walk_of_slot = walker.walk_of_slot;
     found.graph = graph;
     found.components = outlines.len();
@@ -89,10 +90,10 @@ pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
     let alone: Vec<u32> = nodes.filter(|&n| found.graph.star(n).is_empty()).collect();
     found.grains = grains.len() - alone.len();
     outlines.sort_unstable_by(|a, b| {
-        let [a, b] = [a, b].map(|outline| centres[outline.walk.leftmost as usize]);
+        let [a, b] = [a, b].map(|outline| centres[outline.leftmost as usize]);
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
     });
-    found.place(&outlines, &alone, &centres, grains.values());
+    found.place(&outlines, &alone, &centres, grains.values(), longest);
     found
 }
 
@@ -109,6 +110,7 @@ pub fn loop_orders(cells: &[VoidCell]) -> Vec<usize> {
 /// The walk around a component, and its number among all walks.
 struct Outline {
     number: usize,
+    leftmost: u32,
     walk: Walk,
 }
 
@@ -171,9 +173,13 @@ impl VoidCells {
     /// Makes a cell of a walk, or gives it back as an outline.
     fn take(&mut self, walk: Walk) -> Option<Outline> {
         let number = self.cell_of_walk.len();
-        if walk.outer {
+        if let Some(leftmost) = walk.leftmost {
             self.cell_of_walk.push(OUTSIDE);
-            return Some(Outline { number, walk });
+            return Some(Outline {
+                number,
+                leftmost,
+                walk,
+            });
         }
         self.cell_of_walk.push(self.cells.len() as u32);
         self.first_slots.push(walk.first_slot);
@@ -185,13 +191,20 @@ impl VoidCells {
     ///
     /// The first thing to the left of a component's leftmost grain is the loop it lies in, or an outline that lies in
     /// the same cell and was placed before.
-    fn place(&mut self, outlines: &[Outline], alone: &[u32], centres: &[Vector], grains: &[Grain]) {
+    fn place(
+        &mut self,
+        outlines: &[Outline],
+        alone: &[u32],
+        centres: &[Vector],
+        grains: &[Grain],
+        longest: f64,
+    ) {
         // Left of the first there is nothing.
-        let islands = outlines.iter().skip(1).map(|outline| outline.walk.leftmost);
+        let islands = outlines.iter().skip(1).map(|outline| outline.leftmost);
         let seekers = islands.chain(alone.iter().copied());
         let points: Vec<Vector> = seekers.map(|node| centres[node as usize]).collect();
-        let mut met = nearest_to_the_left(&points, &self.graph, centres).into_iter();
-        for (k, Outline { number, walk }) in outlines.iter().enumerate() {
+        let mut met = nearest_to_the_left(&points, &self.graph, centres, longest).into_iter();
+        for (k, Outline { number, walk, .. }) in outlines.iter().enumerate() {
             let slot = if k == 0 { None } else { met.next().flatten() };
             match slot.and_then(|slot| self.cell_left_of(slot)) {
                 Some(cell) => {
