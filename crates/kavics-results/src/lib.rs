@@ -19,6 +19,7 @@ mod results;
 mod room;
 mod sides;
 mod steps;
+mod voids;
 mod warning;
 
 pub use actions::ActionRow;
@@ -36,3 +37,4 @@ pub use results::{Options, Results};
 pub use room::{check_apart, check_room};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
+pub use voids::VoidRow;
