@@ -39,13 +39,13 @@ impl Angles {
 
     /// arctan(y/x) for 0 ≤ y ≤ x: with c the nearest step, arctan c + arctan u, u = (y − c·x)/(x + c·y).
     fn octant(&self, y: f64, x: f64) -> f64 {
-        let nearest = (STEPS as f64 * (y / x) + 0.5) as usize;
-        let c = nearest as f64 / STEPS as f64;
+        let nearest = (STEPS as f64 * (y / x) + 0.5) as u32;
+        let c = f64::from(nearest) / STEPS as f64;
         let u = (y - c * x) / (x + c * y);
         // |u| < 1/(2·STEPS), so that the next term of the series is below rounding.
         let square = u * u;
         let series = 1.0 - square * (1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0)));
-        self.arctangents[nearest.min(STEPS)] + u * series
+        self.arctangents[(nearest as usize).min(STEPS)] + u * series
     }
 }
 

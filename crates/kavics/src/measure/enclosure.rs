@@ -4,6 +4,7 @@
 //! rows with a ray are filled.
 
 use crate::geometry::{Embedding, Vector};
+use crate::measure::rows::Rows;
 
 /// An edge as it is met in a row.
 #[derive(Clone, Copy, Debug)]
@@ -27,14 +28,6 @@ struct Hit {
     lean: f64,
 }
 
-/// The rows of a drawing, from the bottom.
-#[derive(Clone, Copy, Debug)]
-struct Rows {
-    low: f64,
-    per_length: f64,
-    count: usize,
-}
-
 /// For each point, the half-edge that has it on its left and is the first to the left of it; none where there is no
 /// edge. A ray that runs through a node passes just above it. No edge is longer than `longest`.
 pub(super) fn nearest_to_the_left(
@@ -53,29 +46,6 @@ pub(super) fn nearest_to_the_left(
 }
 
 impl Rows {
-    /// Rows as high as nodes are apart in the mean.
-    fn new(centres: &[Vector]) -> Self {
-        let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
-        let mut high = -low;
-        for c in centres {
-            low = Vector::new(low.x.min(c.x), low.y.min(c.y));
-            high = Vector::new(high.x.max(c.x), high.y.max(c.y));
-        }
-        let nodes = centres.len() as f64;
-        let (width, height) = (high.x - low.x, high.y - low.y);
-        let row = (width * height / nodes).sqrt().max(height / nodes);
-        let per_length = if row > 0.0 { 1.0 / row } else { 0.0 };
-        Self {
-            low: low.y,
-            per_length,
-            count: (height * per_length) as usize + 1,
-        }
-    }
-
-    fn row(&self, y: f64) -> usize {
-        (((y - self.low) * self.per_length).max(0.0) as usize).min(self.count - 1)
-    }
-
     /// The edges of each row that one of the points lies in.
     fn fill(
         &self,

@@ -1,6 +1,5 @@
 //! Walks along the faces of the contact graph, and what each face is like.
 
-use crate::assembly::Grain;
 use crate::geometry::{Embedding, HalfEdge, Vector};
 use crate::measure::SymmetricTensor;
 use crate::measure::angle::Angles;
@@ -37,7 +36,7 @@ pub(super) struct Walk {
 pub(super) struct Walker<'a> {
     graph: &'a Embedding,
     centres: &'a [Vector],
-    grains: &'a [Grain],
+    radii: &'a [f64],
     angles: Angles,
     /// Number of the walk through each half-edge.
     pub walk_of_slot: Vec<u32>,
@@ -46,11 +45,11 @@ pub(super) struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    pub fn new(graph: &'a Embedding, centres: &'a [Vector], grains: &'a [Grain]) -> Self {
+    pub fn new(graph: &'a Embedding, centres: &'a [Vector], radii: &'a [f64]) -> Self {
         Self {
             graph,
             centres,
-            grains,
+            radii,
             angles: Angles::new(),
             walk_of_slot: vec![UNSEEN; graph.half_edges().len()],
             longest_squared: 0.0,
@@ -88,7 +87,7 @@ impl<'a> Walker<'a> {
             let HalfEdge { to, twin } = self.graph.half_edges()[slot as usize];
             let end = self.centres[to as usize] - origin;
             let edge = end - start;
-            let radius = self.grains[from as usize].radius;
+            let radius = self.radii[from as usize];
             walk.solid += radius * radius * self.angles.between(edge, back);
             let doubled = start.cross(end);
             walk.area += doubled;

@@ -9,6 +9,7 @@ mod fabric;
 mod face_walk;
 mod graph_porosity;
 mod half_contact;
+mod rows;
 mod strain;
 mod stress;
 mod tensor;
@@ -32,6 +33,7 @@ use crate::assembly::{Assembly, Contact, Partner};
 use crate::equilibrium::{self, Equilibrium, Load, Place, State};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerBody};
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 
 /// All that a measure may read.
 #[derive(Clone, Copy, Debug)]
@@ -128,70 +130,71 @@ pub fn measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
         return Measures::default();
     }
     let strain = strain(snapshot, window);
-    let area = window_area(snapshot, window);
-    let mut sums = Sums::new(snapshot.assembly.grains.len());
-    half_contact::each_half_contact(snapshot, window, |contact| {
-        sums.add(snapshot, window, strain, contact);
+    let mut graph = GraphSums::default();
+    let mut stress = stress::StressSums::new(snapshot.assembly.grains.len());
+    let (mut contact_work, mut work_across) = (0.0, 0.0);
+    each_half_contact(snapshot, window, |contact| {
+        graph.add(contact);
+        stress.add(contact);
+        contact_work += work::half_of_work(snapshot, window, contact);
+        if let Some(e) = strain {
+            work_across += work::work_across(snapshot, window, e, contact);
+        }
     });
-    let porosity = sums.porosity.over(area);
-    let directions = sums.fabric.tensors();
-    let stress = sums.stress.over(area * snapshot.assembly.thickness);
+    let stress = stress.over(window_area(snapshot, window) * snapshot.assembly.thickness);
     Measures {
-        window_area: area,
-        coordination_number: window::contacts_a_grain(sums.contacts, window),
-        void_ratio: void_ratio(snapshot, window),
-        graph_porosity: porosity.map(|p| p.once),
-        graph_porosity_printed: porosity.map(|p| p.printed),
-        fabric: directions.fabric,
-        fabric_length: directions.fabric_length,
-        branch: directions.branch,
-        contact: directions.contact,
         stress,
         strain,
-        contact_work: Some(sums.contact_work),
+        contact_work: Some(contact_work),
         macroscopic_work: stress
             .zip(strain)
             .map(|(stress, e)| macroscopic_work(snapshot, window, stress.total, e)),
-        boundary_work: strain.map(|e| work::work_of_loads(snapshot, window, e) + sums.work_across),
+        boundary_work: strain.map(|e| work::work_of_loads(snapshot, window, e) + work_across),
+        ..graph.measures(snapshot, window)
     }
 }
 
-/// The sums of all measures, so that one pass over the contacts gives them.
-struct Sums {
+/// Those measures of a window that need no forces and displacements: area, coordination number, void ratio, graph
+/// porosity and the fabric tensors. The others are none.
+pub fn geometric_measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
+    if window.grains().is_empty() {
+        return Measures::default();
+    }
+    let mut graph = GraphSums::default();
+    each_half_contact(snapshot, window, |contact| graph.add(contact));
+    graph.measures(snapshot, window)
+}
+
+/// The sums of the geometric measures, so that one pass over the contacts gives them.
+#[derive(Default)]
+struct GraphSums {
     contacts: usize,
     fabric: fabric::FabricSums,
     porosity: graph_porosity::PorositySums,
-    stress: stress::StressSums,
-    contact_work: f64,
-    work_across: f64,
 }
 
-impl Sums {
-    fn new(grains: usize) -> Self {
-        Self {
-            contacts: 0,
-            fabric: fabric::FabricSums::default(),
-            porosity: graph_porosity::PorositySums::default(),
-            stress: stress::StressSums::new(grains),
-            contact_work: 0.0,
-            work_across: 0.0,
-        }
-    }
-
-    fn add(
-        &mut self,
-        snapshot: &Snapshot<'_>,
-        window: &Window,
-        strain: Option<Tensor>,
-        contact: &half_contact::HalfContact,
-    ) {
+impl GraphSums {
+    fn add(&mut self, contact: &HalfContact) {
         self.contacts += 1;
         self.fabric.add(contact);
         self.porosity.add(contact);
-        self.stress.add(contact);
-        self.contact_work += work::half_of_work(snapshot, window, contact);
-        if let Some(e) = strain {
-            self.work_across += work::work_across(snapshot, window, e, contact);
+    }
+
+    fn measures(self, snapshot: &Snapshot<'_>, window: &Window) -> Measures {
+        let area = window_area(snapshot, window);
+        let porosity = self.porosity.over(area);
+        let directions = self.fabric.tensors();
+        Measures {
+            window_area: area,
+            coordination_number: window::contacts_a_grain(self.contacts, window),
+            void_ratio: void_ratio(snapshot, window),
+            graph_porosity: porosity.map(|p| p.once),
+            graph_porosity_printed: porosity.map(|p| p.printed),
+            fabric: directions.fabric,
+            fabric_length: directions.fabric_length,
+            branch: directions.branch,
+            contact: directions.contact,
+            ..Measures::default()
         }
     }
 }

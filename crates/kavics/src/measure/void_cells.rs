@@ -6,11 +6,12 @@
 
 use std::f64::consts::PI;
 
-use crate::assembly::{Grain, Partner};
+use crate::assembly::Partner;
 use crate::geometry::{Embedding, Vector};
-use crate::ids::{ContactId, GrainId};
+use crate::ids::{ContactId, GrainId, PerGrain};
 use crate::measure::enclosure::nearest_to_the_left;
 use crate::measure::face_walk::{Walk, Walker};
+use crate::measure::rows::along_rows;
 use crate::measure::{Snapshot, SymmetricTensor};
 
 /// No cell: what lies around everything.
@@ -49,7 +50,7 @@ pub struct VoidCell {
 /// The void cells of a state, and the graph they are the faces of.
 #[derive(Clone, Debug, Default)]
 pub struct VoidCells {
-    /// The void cells, in the order of the lowest grain and direction on their loops.
+    /// The void cells, along rows from the bottom.
     pub cells: Vec<VoidCell>,
     /// Grains V with an active contact with another grain.
     pub grains: usize,
@@ -60,6 +61,7 @@ pub struct VoidCells {
     /// Area within the outlines of the components that lie in no cell: Σ A_m, `[length²]`.
     pub enclosed_area: f64,
     contact_ids: Vec<ContactId>,
+    grain_of_node: Vec<u32>,
     graph: Embedding,
     first_slots: Vec<u32>,
     walk_of_slot: Vec<u32>,
@@ -70,14 +72,21 @@ pub struct VoidCells {
 ///
 /// Where contacts cross, as between discs that overlap by far, there are no faces, and [`VoidCells::euler`] tells.
 pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
-    let (contact_ids, edges) = active_contacts(snapshot);
     let grains = &snapshot.assembly.grains;
     let centres: Vec<Vector> = grains.ids().map(|grain| snapshot.centre(grain)).collect();
+    // Nodes lie in memory as in the plane, which saves half of the time.
+    let grain_of_node = along_rows(&centres);
+    let centre = |&grain: &u32| centres[grain as usize];
+    let centres: Vec<Vector> = grain_of_node.iter().map(centre).collect();
+    let radius = |&grain: &u32| grains[GrainId(grain)].radius;
+    let radii: Vec<f64> = grain_of_node.iter().map(radius).collect();
+    let (contact_ids, edges) = active_contacts(snapshot, &grain_of_node);
     let graph = Embedding::new(&centres, &edges);
-    let mut walker = Walker::new(&graph, &centres, grains.values());
+    let mut walker = Walker::new(&graph, &centres, &radii);
     let mut found = VoidCells {
         contacts: edges.len(),
         contact_ids,
+        grain_of_node,
         ..VoidCells::default()
     };
     let mut outlines = Vec::new();
@@ -93,7 +102,7 @@ pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
         let [a, b] = [a, b].map(|outline| centres[outline.leftmost as usize]);
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
     });
-    found.place(&outlines, &alone, &centres, grains.values(), longest);
+    found.place(&outlines, &alone, &centres, &radii, longest);
     found
 }
 
@@ -114,18 +123,26 @@ struct Outline {
     walk: Walk,
 }
 
-/// The active contacts between grains, and their grains.
-fn active_contacts(snapshot: &Snapshot<'_>) -> (Vec<ContactId>, Vec<[u32; 2]>) {
-    let contacts = snapshot.assembly.contacts.iter();
-    let active = contacts
-        .zip(snapshot.state.contacts.values())
-        .filter(|(_, state)| state.is_active());
-    active
-        .filter_map(|((id, contact), _)| match (contact.first, contact.second) {
-            (Partner::Grain(first), Partner::Grain(second)) => Some((id, [first.0, second.0])),
-            _ => None,
-        })
-        .unzip()
+/// The active contacts between grains, and their nodes.
+fn active_contacts(
+    snapshot: &Snapshot<'_>,
+    grain_of_node: &[u32],
+) -> (Vec<ContactId>, Vec<[u32; 2]>) {
+    let mut node_of_grain = PerGrain::filled(0_u32, grain_of_node.len());
+    for (node, &grain) in grain_of_node.iter().enumerate() {
+        node_of_grain[GrainId(grain)] = node as u32;
+    }
+    let (mut ids, mut edges) = (Vec::new(), Vec::new());
+    let states = snapshot.state.contacts.values();
+    for ((id, contact), state) in snapshot.assembly.contacts.iter().zip(states) {
+        if let (Partner::Grain(first), Partner::Grain(second)) = (contact.first, contact.second)
+            && state.is_active()
+        {
+            ids.push(id);
+            edges.push([first, second].map(|grain| node_of_grain[grain]));
+        }
+    }
+    (ids, edges)
 }
 
 impl VoidCells {
@@ -148,7 +165,10 @@ impl VoidCells {
         let along = std::iter::successors(Some(first), move |&slot| {
             Some(self.graph.next(slot)).filter(|&next| next != first)
         });
-        along.map(|slot| GrainId(self.graph.half_edges()[slot as usize].to))
+        along.map(|slot| {
+            let node = self.graph.half_edges()[slot as usize].to;
+            GrainId(self.grain_of_node[node as usize])
+        })
     }
 
     /// The cells on the left and on the right of each contact of the graph, seen from its first grain; none: outside.
@@ -196,7 +216,7 @@ impl VoidCells {
         outlines: &[Outline],
         alone: &[u32],
         centres: &[Vector],
-        grains: &[Grain],
+        radii: &[f64],
         longest: f64,
     ) {
         // Left of the first there is nothing.
@@ -216,7 +236,7 @@ impl VoidCells {
         }
         for (&node, slot) in alone.iter().zip(met) {
             if let Some(cell) = slot.and_then(|slot| self.cell_left_of(slot)) {
-                self.cells[cell].add_rattler(grains[node as usize].radius);
+                self.cells[cell].add_rattler(radii[node as usize]);
             }
         }
     }
