@@ -23,6 +23,7 @@ mod results;
 mod room;
 mod sides;
 mod steps;
+mod voids;
 mod warning;
 
 pub use actions::ActionRow;
@@ -41,3 +42,4 @@ pub use results::{Options, Results};
 pub use room::{check_apart, check_room};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
+pub use voids::VoidRow;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use kavics::assembly::{Grain, Partner, Side};
 use kavics::equilibrium::{Equilibrium, EventKind, Iterate, Load, State};
 use kavics::ids::{BodyId, GrainId, Id, PerBody, PerGrain, SideId};
-use kavics::measure::{Measures, Tensor};
+use kavics::measure::{Measures, Snapshot, Tensor, void_cells};
 use kavics::scene::Scene;
 
 use crate::ResultsError;
@@ -20,9 +20,10 @@ use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
 use crate::packing_record::PackingRecord;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
-use crate::room::{RECORDED, make_room};
+use crate::room::{RECORDED, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
+use crate::voids::{void_columns, void_rows};
 use crate::warning::SolverWarnings;
 
 /// Tables that grow are written again at most this often.
@@ -67,7 +68,8 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
-        for name in RECORDED {
+        let voids = scene.record_voids.then_some(VOIDS);
+        for name in RECORDED.into_iter().chain(voids) {
             let path = folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -257,7 +259,13 @@ impl<'a> Results<'a> {
         let contacts = self.contact_rows(equilibrium);
         publish_table(&path("contacts"), &contact_columns(), &contacts)?;
         let sides = self.side_rows(equilibrium);
-        publish_table(&path("sides"), &side_columns(), &sides)
+        publish_table(&path("sides"), &side_columns(), &sides)?;
+        if self.scene.record_voids {
+            let snapshot = Snapshot::new(&self.scene.assembly, equilibrium);
+            let rows = void_rows(equilibrium.step, &void_cells(&snapshot));
+            publish_table(&path(VOIDS), &void_columns(), &rows)?;
+        }
+        Ok(())
     }
 
     fn grain_rows(

@@ -150,6 +150,33 @@ fn the_last_step_is_recorded_whatever_the_interval() {
 }
 
 #[test]
+fn void_cells_are_recorded_when_asked_for() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let mut scene = block::scene(7, 5);
+    block::write(&folder, &scene);
+    assert!(!folder.join("voids").exists());
+
+    scene.record_voids = true;
+    let folder = place.path().join("voids.results");
+    block::write(&folder, &scene);
+    let folder = ResultsFolder::open(&folder).unwrap();
+    // Six strips of 4 + 3 triangles of discs of radius 1.
+    assert_eq!(
+        folder.voids(0).unwrap().integers("order").unwrap(),
+        [Some(3); 42]
+    );
+    for step in folder.recorded_steps().unwrap() {
+        // Contacts that break join cells, and leave their area as it was.
+        let voids = folder.voids(step).unwrap();
+        let area: f64 = voids.numbers("area").unwrap().iter().sum();
+        assert!((area - 42.0 * 3f64.sqrt()).abs() < 1e-11);
+        assert_eq!(voids.integers("step").unwrap()[0], Some(step as i64));
+    }
+    assert!(folder.voids(5).unwrap().len() < 42);
+}
+
+#[test]
 fn two_runs_write_the_same_bytes() {
     let place = place();
     let scene = block::scene(7, 5);

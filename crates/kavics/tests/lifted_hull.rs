@@ -133,7 +133,10 @@ fn check(name: &str, discs: &Discs) {
     let on_hull = hull.values().filter(|length| length.is_none()).count();
     // Those too flat to matter are left out.
     let all = 2 * discs.len() - 2 - on_hull;
-    assert!(triangles <= all && (triangles == all || name.contains("e-")), "{name}");
+    assert!(
+        triangles <= all && (triangles == all || name.contains("e-")),
+        "{name}"
+    );
 }
 
 fn dropped(sizes: &Sizes, count: usize, width: f64, seed: u64) -> Discs {

@@ -9,8 +9,8 @@ use kavics::ids::{ContactId, GrainId};
 use kavics::measure::{
     Measures, StressPartition, SymmetricTensor, Tensor, Window, average_stress, bending_stress,
     boundary_work, branch_tensor, contact_mean_work, contact_tensor, contact_work,
-    fabric_length_tensor, fabric_tensor, grain_stress, graph_porosity, macroscopic_work, measures,
-    moment_asymmetry, strain, stress_partition, window_area,
+    fabric_length_tensor, fabric_tensor, geometric_measures, grain_stress, graph_porosity,
+    macroscopic_work, measures, moment_asymmetry, strain, stress_partition, window_area,
 };
 use proptest::prelude::*;
 
@@ -343,6 +343,23 @@ fn partition_of_touching_discs_is_that_of_the_source() {
     assert!(same(found.variation, variation * (1.0 / area)));
     assert!(same(found.fabric, Tensor::default()));
     assert!(close(found.isotropic, 3.0 * mean / area));
+}
+
+#[test]
+fn geometric_measures_are_those_of_all_without_forces_and_displacements() {
+    let block = regular();
+    let window = Block::inner();
+    let all = measures(&block.snapshot(), &window);
+    let found = geometric_measures(&block.snapshot(), &window);
+    let expected = Measures {
+        stress: None,
+        strain: None,
+        contact_work: None,
+        macroscopic_work: None,
+        boundary_work: None,
+        ..all
+    };
+    assert_eq!(found, expected);
 }
 
 #[test]

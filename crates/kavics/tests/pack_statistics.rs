@@ -24,7 +24,9 @@ fn dropped(
 ) -> (PerGrain<Grain>, PerSide<kavics::assembly::Side>) {
     let sizes = Sizes::Uniform { from: 0.5, to: 1.5 };
     let radii = sizes.radii(count, seed).unwrap();
-    let grains = drop(&Bed::empty_box(width), &radii, 1, seed).unwrap().grains;
+    let grains = drop(&Bed::empty_box(width), &radii, 1, seed)
+        .unwrap()
+        .grains;
     let tops = grains.values().iter().map(|g| g.centre.y + g.radius);
     let sides = box_sides(width, tops.fold(0.0, f64::max), [true; 4]);
     (grains, sides)

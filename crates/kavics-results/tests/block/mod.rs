@@ -71,6 +71,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         breakage: Breakage::default(),
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
+        record_voids: false,
         compare: None,
         warnings: vec!["0.73 of the top side carries no load: no grain is met there".to_owned()],
         text: "title = \"Block of discs, pressed from above\"\n".to_owned(),

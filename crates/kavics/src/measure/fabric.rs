@@ -4,7 +4,7 @@
 //! included: a contact within the window counts twice, one that leaves it and one with a side once.
 
 use crate::geometry::Vector;
-use crate::measure::half_contact::{HalfContact, half_contacts};
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 use crate::measure::{Snapshot, SymmetricTensor, Window};
 
 /// The four readings of where contacts point.
@@ -16,16 +16,24 @@ pub(super) struct FabricTensors {
     pub contact: Option<SymmetricTensor>,
 }
 
-/// All four in one pass.
-pub(super) fn fabric_tensors(snapshot: &Snapshot<'_>, window: &Window) -> FabricTensors {
-    let [fabric, fabric_length, branch, contact] = weighted(snapshot, window, |c| {
-        [1.0, squared_length(c), c.branch_length, c.dual_length]
-    });
-    FabricTensors {
-        fabric,
-        fabric_length,
-        branch,
-        contact,
+/// The sums of all four.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FabricSums(Weighted<4>);
+
+impl FabricSums {
+    pub fn add(&mut self, c: &HalfContact) {
+        let weights = [1.0, squared_length(c), c.branch_length, c.dual_length];
+        self.0.add(c.normal, weights);
+    }
+
+    pub fn tensors(self) -> FabricTensors {
+        let [fabric, fabric_length, branch, contact] = self.0.tensors();
+        FabricTensors {
+            fabric,
+            fabric_length,
+            branch,
+            contact,
+        }
     }
 }
 
@@ -92,7 +100,9 @@ fn squared_length(contact: &HalfContact) -> f64 {
 ///
 /// [`fabric_tensor`] of all M contacts where none of them is with a side; none without a contact.
 pub fn fabric_of_normals(normals: impl Iterator<Item = Vector>) -> Option<SymmetricTensor> {
-    let [tensor] = weighted_mean(normals.map(|normal| (normal, [1.0])));
+    let mut sums = Weighted::default();
+    normals.for_each(|normal| sums.add(normal, [1.0]));
+    let [tensor] = sums.tensors();
     tensor
 }
 
@@ -102,21 +112,35 @@ fn weighted<const N: usize>(
     window: &Window,
     weights: impl Fn(&HalfContact) -> [f64; N],
 ) -> [Option<SymmetricTensor>; N] {
-    let contacts = half_contacts(snapshot, window);
-    weighted_mean(contacts.map(|contact| (contact.normal, weights(&contact))))
+    let mut sums = Weighted::default();
+    each_half_contact(snapshot, window, |contact| {
+        sums.add(contact.normal, weights(contact));
+    });
+    sums.tensors()
 }
 
-/// Σ w n_i n_j / Σ w for each of several weights w.
-fn weighted_mean<const N: usize>(
-    normals: impl Iterator<Item = (Vector, [f64; N])>,
-) -> [Option<SymmetricTensor>; N] {
-    let mut sums = [(SymmetricTensor::default(), 0.0); N];
-    normals.for_each(|(normal, weights)| {
+/// Σ w n_i n_j and Σ w for each of several weights w.
+#[derive(Clone, Copy, Debug)]
+struct Weighted<const N: usize>([(SymmetricTensor, f64); N]);
+
+impl<const N: usize> Default for Weighted<N> {
+    fn default() -> Self {
+        Self([(SymmetricTensor::default(), 0.0); N])
+    }
+}
+
+impl<const N: usize> Weighted<N> {
+    fn add(&mut self, normal: Vector, weights: [f64; N]) {
         let directed = SymmetricTensor::square(normal);
-        for ((tensor, total), weight) in sums.iter_mut().zip(weights) {
+        for ((tensor, total), weight) in self.0.iter_mut().zip(weights) {
             *tensor += directed * weight;
             *total += weight;
         }
-    });
-    sums.map(|(tensor, total)| (total > 0.0).then(|| tensor * (1.0 / total)))
+    }
+
+    fn tensors(self) -> [Option<SymmetricTensor>; N] {
+        let ratio =
+            |(tensor, total): (SymmetricTensor, f64)| (total > 0.0).then(|| tensor * (1.0 / total));
+        self.0.map(ratio)
+    }
 }

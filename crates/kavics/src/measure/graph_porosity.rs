@@ -1,6 +1,6 @@
 //! Graph porosity: how much of the window the contact graph covers.
 
-use crate::measure::half_contact::half_contacts;
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 use crate::measure::{Snapshot, Window, window_area};
 
 /// The two readings of the graph porosity.
@@ -27,17 +27,34 @@ pub struct GraphPorosity {
 /// active contact. s is the full dual length, and means are taken over the same double sum. Bojtár & Bagi (1989),
 /// eqs. 4–5 (decision 0002).
 pub fn graph_porosity(snapshot: &Snapshot<'_>, window: &Window) -> Option<GraphPorosity> {
-    let area = window_area(snapshot, window);
-    let (mut covered, mut dual, mut branch, mut count) = (0.0, 0.0, 0.0, 0.0);
-    half_contacts(snapshot, window).for_each(|contact| {
-        covered += 0.5 * contact.dual_length * contact.normal_arm();
-        dual += contact.dual_length;
-        branch += contact.branch_length;
-        count += 1.0;
-    });
-    (area > 0.0).then(|| GraphPorosity {
-        once: covered / area,
-        // Σm · ½ s̄ l̄ with s̄ = Σs/Σm and l̄ = Σl/Σm; the bound keeps 0/0 away.
-        printed: 0.5 * dual * branch / (f64::max(count, 1.0) * area),
-    })
+    let mut sums = PorositySums::default();
+    each_half_contact(snapshot, window, |contact| sums.add(contact));
+    sums.over(window_area(snapshot, window))
+}
+
+/// Sums over half contacts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PorositySums {
+    covered: f64,
+    dual: f64,
+    branch: f64,
+    count: f64,
+}
+
+impl PorositySums {
+    pub fn add(&mut self, contact: &HalfContact) {
+        self.covered += 0.5 * contact.dual_length * contact.normal_arm();
+        self.dual += contact.dual_length;
+        self.branch += contact.branch_length;
+        self.count += 1.0;
+    }
+
+    /// The graph porosity of a window with this area.
+    pub fn over(self, area: f64) -> Option<GraphPorosity> {
+        (area > 0.0).then(|| GraphPorosity {
+            once: self.covered / area,
+            // Σm · ½ s̄ l̄ with s̄ = Σs/Σm and l̄ = Σl/Σm; the bound keeps 0/0 away.
+            printed: 0.5 * self.dual * self.branch / (f64::max(self.count, 1.0) * area),
+        })
+    }
 }

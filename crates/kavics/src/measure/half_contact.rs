@@ -2,8 +2,7 @@
 //!
 //! A contact between two grains of the window is met twice, one that leaves the window once, one with a side once.
 
-use crate::assembly::{Contact, Partner};
-use crate::equilibrium::{ContactState, Place};
+use crate::assembly::Partner;
 use crate::geometry::Vector;
 use crate::ids::GrainId;
 use crate::measure::{Snapshot, Window};
@@ -53,53 +52,51 @@ impl HalfContact {
     }
 }
 
-/// The active contacts of the window's grains in the order of the contact ids, first partner before second.
-pub(super) fn half_contacts<'a>(
-    snapshot: &Snapshot<'a>,
-    window: &'a Window,
-) -> impl Iterator<Item = HalfContact> + 'a {
-    all_half_contacts(snapshot).filter(|half| window.contains(half.grain))
+/// Visits the active contacts of the window's grains in the order of the contact ids, first partner before second.
+pub(super) fn each_half_contact(
+    snapshot: &Snapshot<'_>,
+    window: &Window,
+    visit: impl FnMut(&HalfContact),
+) {
+    visit_halves(snapshot, |grain| window.contains(grain), visit);
 }
 
-/// The active contacts of all grains, in the same order.
-pub(super) fn all_half_contacts<'a>(
-    snapshot: &Snapshot<'a>,
-) -> impl Iterator<Item = HalfContact> + use<'a> {
-    let snapshot = *snapshot;
+/// Visits the active contacts of all grains, in the same order.
+pub(super) fn each_half_contact_of_all(snapshot: &Snapshot<'_>, visit: impl FnMut(&HalfContact)) {
+    visit_halves(snapshot, |_| true, visit);
+}
+
+fn visit_halves(
+    snapshot: &Snapshot<'_>,
+    wanted: impl Fn(GrainId) -> bool,
+    mut visit: impl FnMut(&HalfContact),
+) {
     let contacts = snapshot.assembly.contacts.values().iter();
-    let active = contacts
-        .zip(snapshot.state.contacts.values())
-        .filter(|(_, state)| state.is_active());
-    active
-        .flat_map(move |(contact, state)| halves(contact, snapshot.place(contact), state))
-        .flatten()
-        .map(move |mut half| {
-            half.lever = half.lever - snapshot.centre(half.grain);
-            half
-        })
-}
-
-/// Both ends of a contact, the lever still the contact point itself; none for a side.
-fn halves(contact: &Contact, place: Place, state: &ContactState) -> [Option<HalfContact>; 2] {
-    let half = |own: Partner, partner: Partner, sign: f64| {
-        let Partner::Grain(grain) = own else {
-            return None;
-        };
-        Some(HalfContact {
-            grain,
-            partner,
-            // With n and t both reversed, F_n and F_t are the same at both ends.
-            normal: place.normal * sign,
-            lever: place.point,
-            normal_force: state.force.normal,
-            shear_force: state.force.shear,
-            moment: state.force.moment * sign,
-            branch_length: place.branch_length,
-            dual_length: contact.dual_length_full,
-        })
-    };
-    [
-        half(contact.first, contact.second, 1.0),
-        half(contact.second, contact.first, -1.0),
-    ]
+    let states = snapshot.state.contacts.values();
+    for (contact, state) in contacts.zip(states).filter(|(_, state)| state.is_active()) {
+        let place = snapshot.place(contact);
+        let ends = [
+            (contact.first, contact.second, 1.0),
+            (contact.second, contact.first, -1.0),
+        ];
+        for (own, partner, sign) in ends {
+            let Partner::Grain(grain) = own else {
+                continue;
+            };
+            if wanted(grain) {
+                visit(&HalfContact {
+                    grain,
+                    partner,
+                    // With n and t both reversed, F_n and F_t are the same at both ends.
+                    normal: place.normal * sign,
+                    lever: place.point - snapshot.centre(grain),
+                    normal_force: state.force.normal,
+                    shear_force: state.force.shear,
+                    moment: state.force.moment * sign,
+                    branch_length: place.branch_length,
+                    dual_length: contact.dual_length_full,
+                });
+            }
+        }
+    }
 }

@@ -6,14 +6,19 @@
 //! What tells of contacts alone, before there is an equilibrium, takes their partners or normals instead:
 //! [`Coordination`], [`Rose`], [`fabric_of_normals`].
 
+mod angle;
 mod coordination;
+mod enclosure;
 mod fabric;
+mod face_walk;
 mod graph_porosity;
 mod half_contact;
 mod rose;
+mod rows;
 mod strain;
 mod stress;
 mod tensor;
+mod void_cells;
 mod window;
 mod work;
 
@@ -29,6 +34,7 @@ pub use stress::{
     stress_partition,
 };
 pub use tensor::{SymmetricTensor, Tensor};
+pub use void_cells::{VoidCell, VoidCells, loop_orders, void_cells};
 pub use window::{Window, coordination_number, void_ratio, window_area};
 pub use work::{boundary_work, contact_mean_work, contact_work, macroscopic_work};
 
@@ -36,6 +42,7 @@ use crate::assembly::{Assembly, Contact, Partner};
 use crate::equilibrium::{self, Equilibrium, Load, Place, State};
 use crate::geometry::Vector;
 use crate::ids::{GrainId, PerBody};
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 
 /// All that a measure may read.
 #[derive(Clone, Copy, Debug)]
@@ -131,26 +138,72 @@ pub fn measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
     if window.grains().is_empty() {
         return Measures::default();
     }
-    let porosity = graph_porosity(snapshot, window);
-    let directions = fabric::fabric_tensors(snapshot, window);
-    let stress = stress_partition(snapshot, window);
     let strain = strain(snapshot, window);
+    let mut graph = GraphSums::default();
+    let mut stress = stress::StressSums::new(snapshot.assembly.grains.len());
+    let (mut contact_work, mut work_across) = (0.0, 0.0);
+    each_half_contact(snapshot, window, |contact| {
+        graph.add(contact);
+        stress.add(contact);
+        contact_work += work::half_of_work(snapshot, window, contact);
+        if let Some(e) = strain {
+            work_across += work::work_across(snapshot, window, e, contact);
+        }
+    });
+    let stress = stress.over(window_area(snapshot, window) * snapshot.assembly.thickness);
     Measures {
-        window_area: window_area(snapshot, window),
-        coordination_number: coordination_number(snapshot, window),
-        void_ratio: void_ratio(snapshot, window),
-        graph_porosity: porosity.map(|p| p.once),
-        graph_porosity_printed: porosity.map(|p| p.printed),
-        fabric: directions.fabric,
-        fabric_length: directions.fabric_length,
-        branch: directions.branch,
-        contact: directions.contact,
         stress,
         strain,
-        contact_work: Some(contact_work(snapshot, window)),
+        contact_work: Some(contact_work),
         macroscopic_work: stress
             .zip(strain)
             .map(|(stress, e)| macroscopic_work(snapshot, window, stress.total, e)),
-        boundary_work: strain.map(|e| boundary_work(snapshot, window, e)),
+        boundary_work: strain.map(|e| work::work_of_loads(snapshot, window, e) + work_across),
+        ..graph.measures(snapshot, window)
+    }
+}
+
+/// Those measures of a window that need no forces and displacements: area, coordination number, void ratio, graph
+/// porosity and the fabric tensors. The others are none.
+pub fn geometric_measures(snapshot: &Snapshot<'_>, window: &Window) -> Measures {
+    if window.grains().is_empty() {
+        return Measures::default();
+    }
+    let mut graph = GraphSums::default();
+    each_half_contact(snapshot, window, |contact| graph.add(contact));
+    graph.measures(snapshot, window)
+}
+
+/// The sums of the geometric measures, so that one pass over the contacts gives them.
+#[derive(Default)]
+struct GraphSums {
+    contacts: usize,
+    fabric: fabric::FabricSums,
+    porosity: graph_porosity::PorositySums,
+}
+
+impl GraphSums {
+    fn add(&mut self, contact: &HalfContact) {
+        self.contacts += 1;
+        self.fabric.add(contact);
+        self.porosity.add(contact);
+    }
+
+    fn measures(self, snapshot: &Snapshot<'_>, window: &Window) -> Measures {
+        let area = window_area(snapshot, window);
+        let porosity = self.porosity.over(area);
+        let directions = self.fabric.tensors();
+        Measures {
+            window_area: area,
+            coordination_number: window::contacts_a_grain(self.contacts, window),
+            void_ratio: void_ratio(snapshot, window),
+            graph_porosity: porosity.map(|p| p.once),
+            graph_porosity_printed: porosity.map(|p| p.printed),
+            fabric: directions.fabric,
+            fabric_length: directions.fabric_length,
+            branch: directions.branch,
+            contact: directions.contact,
+            ..Measures::default()
+        }
     }
 }

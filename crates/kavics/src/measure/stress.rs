@@ -7,8 +7,8 @@
 //! Cundall & Strack (1983); Bojtár & Bagi (1989), eqs. 8–13.
 
 use crate::ids::PerGrain;
-use crate::measure::half_contact::{HalfContact, all_half_contacts, half_contacts};
-use crate::measure::{Snapshot, Tensor, Window, window_area};
+use crate::measure::half_contact::{HalfContact, each_half_contact, each_half_contact_of_all};
+use crate::measure::{Snapshot, SymmetricTensor, Tensor, Window, window_area};
 
 /// Average stress and its four parts after Cundall & Strack (1983), `[force/length²]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,24 +53,84 @@ pub fn average_stress(snapshot: &Snapshot<'_>, window: &Window) -> Option<Tensor
 /// have no trace. `[force/length²]`; none in an empty window. With contact points on the branches, a = R and b = 0,
 /// they are Cundall & Strack's (1983); Bojtár & Bagi (1989), eqs. 10–13 (decision 0003).
 pub fn stress_partition(snapshot: &Snapshot<'_>, window: &Window) -> Option<StressPartition> {
-    let mean_forces = mean_normal_forces(snapshot);
-    let mut parts = StressPartition::default();
-    half_contacts(snapshot, window)
-        .for_each(|contact| add_parts(&mut parts, &contact, mean_forces[contact.grain]));
-    let volume = window_area(snapshot, window) * snapshot.assembly.thickness;
-    (volume > 0.0).then(|| StressPartition {
-        total: parts.total * (1.0 / volume),
-        shear: parts.shear * (1.0 / volume),
-        variation: parts.variation * (1.0 / volume),
-        fabric: parts.fabric * (1.0 / volume),
-        isotropic: parts.isotropic / volume,
-    })
+    let mut sums = StressSums::new(snapshot.assembly.grains.len());
+    each_half_contact(snapshot, window, |contact| sums.add(contact));
+    sums.over(window_area(snapshot, window) * snapshot.assembly.thickness)
+}
+
+/// Sums over half contacts, not yet divided by the volume.
+#[derive(Clone, Debug)]
+pub(super) struct StressSums {
+    total: Tensor,
+    shear: Tensor,
+    /// Σ a F_n n_i n_j: normal variation and fabric part, with the isotropic stress of the latter.
+    normal: Tensor,
+    isotropic: f64,
+    of_grains: PerGrain<NormalSums>,
+}
+
+/// Sums over the contacts of one grain.
+#[derive(Clone, Copy, Debug, Default)]
+struct NormalSums {
+    /// Σ a n_i n_j.
+    directed: SymmetricTensor,
+    /// Σ a F_n.
+    force: f64,
+}
+
+impl StressSums {
+    /// No contact yet, of so many grains.
+    pub fn new(grains: usize) -> Self {
+        Self {
+            total: Tensor::default(),
+            shear: Tensor::default(),
+            normal: Tensor::default(),
+            isotropic: 0.0,
+            of_grains: PerGrain::filled(NormalSums::default(), grains),
+        }
+    }
+
+    pub fn add(&mut self, contact: &HalfContact) {
+        let (a, b) = (contact.normal_arm(), contact.tangent_arm());
+        let (normal, tangent, force) = (contact.normal, contact.tangent(), contact.force());
+        self.total += Tensor::product(contact.lever, force);
+        self.shear += Tensor::product(normal, tangent) * (a * contact.shear_force)
+            + Tensor::product(tangent, force) * b
+            + Tensor::isotropic(-0.5 * b * contact.shear_force);
+        self.normal += Tensor::product(normal, normal) * (a * contact.normal_force);
+        self.isotropic += 0.5 * (a * contact.normal_force + b * contact.shear_force);
+        let of_grain = &mut self.of_grains[contact.grain];
+        of_grain.directed += SymmetricTensor::square(normal) * a;
+        of_grain.force += a * contact.normal_force;
+    }
+
+    /// The stress of a window with this volume, and its parts.
+    pub fn over(&self, volume: f64) -> Option<StressPartition> {
+        let (mut mean, mut fabric) = (Tensor::default(), Tensor::default());
+        for NormalSums { directed, force } in self.of_grains.values() {
+            // F̄ of the grain; Σ a is the trace of Σ a n_i n_j.
+            let arms = directed.trace();
+            if arms != 0.0 {
+                let part = directed.full() * (force / arms);
+                mean += part;
+                fabric += part + Tensor::isotropic(-0.5 * force);
+            }
+        }
+        let per_volume = |part: Tensor| part * (1.0 / volume);
+        (volume > 0.0).then(|| StressPartition {
+            total: per_volume(self.total),
+            shear: per_volume(self.shear),
+            variation: per_volume(self.normal + mean * -1.0),
+            fabric: per_volume(fabric),
+            isotropic: self.isotropic / volume,
+        })
+    }
 }
 
 /// Average stress of each grain over its own power cell, `[force/length²]`; zero where the cell is empty.
 pub fn grain_stress(snapshot: &Snapshot<'_>) -> PerGrain<Tensor> {
     let mut stress = PerGrain::filled(Tensor::default(), snapshot.assembly.grains.len());
-    all_half_contacts(snapshot).for_each(|contact| {
+    each_half_contact_of_all(snapshot, |contact| {
         stress[contact.grain] += Tensor::product(contact.lever, contact.force());
     });
     let areas = snapshot.assembly.cell_area.values();
@@ -108,7 +168,8 @@ pub fn bending_stress(snapshot: &Snapshot<'_>, window: &Window) -> Option<Tensor
 /// m external moment and reaction on grain p, M⁽ᵖ⁾ moment of contact c on it. Equal to the asymmetry of
 /// [`average_stress`] where the moments on each grain balance. `[force/length²]`; none in an empty window.
 pub fn moment_asymmetry(snapshot: &Snapshot<'_>, window: &Window) -> Option<f64> {
-    let contacts: f64 = half_contacts(snapshot, window).map(|c| c.moment).sum();
+    let mut contacts = 0.0;
+    each_half_contact(snapshot, window, |contact| contacts += contact.moment);
     let grains = window.grains().iter();
     let external: f64 = grains.map(|&p| snapshot.external(p).moment).sum();
     let volume = window_area(snapshot, window) * snapshot.assembly.thickness;
@@ -122,33 +183,7 @@ fn per_volume(
     term: impl Fn(&HalfContact) -> Tensor,
 ) -> Option<Tensor> {
     let mut sum = Tensor::default();
-    half_contacts(snapshot, window).for_each(|contact| sum += term(&contact));
+    each_half_contact(snapshot, window, |contact| sum += term(contact));
     let volume = window_area(snapshot, window) * snapshot.assembly.thickness;
     (volume > 0.0).then(|| sum * (1.0 / volume))
-}
-
-/// F̄ of each grain; zero where it has no active contact.
-fn mean_normal_forces(snapshot: &Snapshot<'_>) -> PerGrain<f64> {
-    let mut sums = PerGrain::filled((0.0, 0.0), snapshot.assembly.grains.len());
-    all_half_contacts(snapshot).for_each(|contact| {
-        let arm = contact.normal_arm();
-        let (force, arms) = &mut sums[contact.grain];
-        *force += arm * contact.normal_force;
-        *arms += arm;
-    });
-    sums.map(|&(force, arms)| if arms == 0.0 { 0.0 } else { force / arms })
-}
-
-/// Adds what one half contact gives to each part, not yet divided by the volume.
-fn add_parts(parts: &mut StressPartition, contact: &HalfContact, mean_force: f64) {
-    let (a, b) = (contact.normal_arm(), contact.tangent_arm());
-    let (normal, tangent, force) = (contact.normal, contact.tangent(), contact.force());
-    let directed = Tensor::product(normal, normal);
-    parts.total += Tensor::product(contact.lever, force);
-    parts.shear += Tensor::product(normal, tangent) * (a * contact.shear_force)
-        + Tensor::product(tangent, force) * b
-        + Tensor::isotropic(-0.5 * b * contact.shear_force);
-    parts.variation += directed * (a * (contact.normal_force - mean_force));
-    parts.fabric += (directed + Tensor::isotropic(-0.5)) * (a * mean_force);
-    parts.isotropic += 0.5 * (a * contact.normal_force + b * contact.shear_force);
 }

@@ -38,6 +38,16 @@ impl SymmetricTensor {
         }
     }
 
+    /// The same tensor with both its components off the diagonal.
+    pub(super) fn full(self) -> Tensor {
+        Tensor {
+            xx: self.xx,
+            xy: self.xy,
+            yx: self.xy,
+            yy: self.yy,
+        }
+    }
+
     /// Sum of the diagonal.
     pub fn trace(self) -> f64 {
         self.xx + self.yy

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::ids::{GrainId, PerGrain};
 use crate::measure::Snapshot;
-use crate::measure::half_contact::half_contacts;
+use crate::measure::half_contact::each_half_contact;
 
 /// The grains that are measured.
 #[derive(Clone, Debug, Default)]
@@ -57,7 +57,13 @@ pub fn void_ratio(snapshot: &Snapshot<'_>, window: &Window) -> Option<f64> {
 /// Coordination number Z = Σ m_p / N: active contacts a grain, those with sides and grains without contact
 /// counted; none in an empty window.
 pub fn coordination_number(snapshot: &Snapshot<'_>, window: &Window) -> Option<f64> {
-    let contacts = half_contacts(snapshot, window).count();
+    let mut contacts = 0;
+    each_half_contact(snapshot, window, |_| contacts += 1);
+    contacts_a_grain(contacts, window)
+}
+
+/// Half contacts over grains; none in an empty window.
+pub(super) fn contacts_a_grain(contacts: usize, window: &Window) -> Option<f64> {
     let grains = window.grains().len();
     (grains > 0).then(|| contacts as f64 / grains as f64)
 }

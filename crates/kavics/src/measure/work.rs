@@ -7,7 +7,7 @@
 use crate::assembly::Partner;
 use crate::geometry::Vector;
 use crate::ids::ContactId;
-use crate::measure::half_contact::{HalfContact, half_contacts};
+use crate::measure::half_contact::{HalfContact, each_half_contact};
 use crate::measure::{Snapshot, Tensor, Window, window_area};
 
 /// Work of the contact forces within the window on the displacements of the centres.
@@ -18,16 +18,22 @@ use crate::measure::{Snapshot, Tensor, Window, window_area};
 ///
 /// Over active contacts with both grains i and j in the window, F the force on the first, i. `[force·length]`.
 pub fn contact_work(snapshot: &Snapshot<'_>, window: &Window) -> f64 {
-    // Each of these contacts is met from both its grains.
-    half_contacts(snapshot, window)
-        .filter_map(|contact| match contact.partner {
-            Partner::Grain(other) if window.contains(other) => {
-                let opening = snapshot.translation(other) - snapshot.translation(contact.grain);
-                Some(0.5 * contact.force().dot(opening))
-            }
-            _ => None,
-        })
-        .sum()
+    let mut work = 0.0;
+    each_half_contact(snapshot, window, |contact| {
+        work += half_of_work(snapshot, window, contact);
+    });
+    work
+}
+
+/// What one of its two grains adds to the work of a contact; nothing where the contact leaves the window.
+pub(super) fn half_of_work(snapshot: &Snapshot<'_>, window: &Window, contact: &HalfContact) -> f64 {
+    match contact.partner {
+        Partner::Grain(other) if window.contains(other) => {
+            let opening = snapshot.translation(other) - snapshot.translation(contact.grain);
+            0.5 * contact.force().dot(opening)
+        }
+        _ => 0.0,
+    }
 }
 
 /// Work of an average stress on an average strain, A·H·σ_ij·e_ij, `[force·length]`.
@@ -53,19 +59,37 @@ pub fn macroscopic_work(
 /// u and e; zero where loaded grains and contacts across the boundary follow e. `[force·length]`.
 /// Hill (1963), for contacts.
 pub fn boundary_work(snapshot: &Snapshot<'_>, window: &Window, gradient: Tensor) -> f64 {
+    let mut work = work_of_loads(snapshot, window, gradient);
+    each_half_contact(snapshot, window, |contact| {
+        work += work_across(snapshot, window, gradient, contact);
+    });
+    work
+}
+
+/// The first sum of [`boundary_work`], over loads and reactions.
+pub(super) fn work_of_loads(snapshot: &Snapshot<'_>, window: &Window, gradient: Tensor) -> f64 {
     let mut work = 0.0;
     for &grain in window.grains() {
         let (load, centre) = (snapshot.external(grain), snapshot.centre(grain));
         let fluctuation = snapshot.translation(grain) - gradient.at(centre);
         work += Vector::new(load.x, load.y).dot(fluctuation);
     }
-    let crossing = half_contacts(snapshot, window).filter(|contact| leaves(contact, window));
-    crossing.for_each(|contact| {
-        let point = snapshot.centre(contact.grain) + contact.lever;
-        let fluctuation = snapshot.translation(contact.grain) - gradient.at(point);
-        work += contact.force().dot(fluctuation);
-    });
     work
+}
+
+/// What a contact adds to the second sum of [`boundary_work`]; nothing where it lies within the window.
+pub(super) fn work_across(
+    snapshot: &Snapshot<'_>,
+    window: &Window,
+    gradient: Tensor,
+    contact: &HalfContact,
+) -> f64 {
+    if !leaves(contact, window) {
+        return 0.0;
+    }
+    let point = snapshot.centre(contact.grain) + contact.lever;
+    let fluctuation = snapshot.translation(contact.grain) - gradient.at(point);
+    contact.force().dot(fluctuation)
 }
 
 /// Work of the mean stress and mean strain of the kite of one contact: ½·F·Δu.

@@ -172,6 +172,7 @@ fn build(
         breakage: plan.run.breakage,
         window,
         record_every: plan.run.record_every,
+        record_voids: plan.run.record_voids,
         compare: plan.run.compare,
         warnings: Vec::new(),
         text: String::new(),

@@ -23,6 +23,8 @@ pub struct RunPlan {
     pub window: WindowPlan,
     /// Grains and contacts are recorded every so many load steps.
     pub record_every: usize,
+    /// Whether void cells are recorded with them.
+    pub record_voids: bool,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
 }
@@ -52,10 +54,8 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
         checker.word(word, "every", &[("step", false), ("iteration", true)])
     });
-    let every = file
-        .record
-        .as_ref()
-        .and_then(|record| record.value.every.as_ref());
+    let record = file.record.as_ref().map(|record| &record.value);
+    let every = record.and_then(|record| record.every.as_ref());
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
     let compare = match &file.compare {
         None => Some(None),
@@ -70,6 +70,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
         breakage,
         window: window?,
         record_every: record_every?,
+        record_voids: record.and_then(|record| record.voids).unwrap_or(false),
         compare: compare?,
     })
 }

@@ -268,6 +268,8 @@ impl Described for WindowFile {
 pub struct RecordFile {
     /// Grains and contacts of every k-th load step; 1 when absent.
     pub every: Option<Placed<i64>>,
+    /// Whether the void cells of these load steps are recorded too; not when absent.
+    pub voids: Option<bool>,
 }
 
 /// Table to set beside the run.

@@ -71,6 +71,8 @@ pub struct Scene {
     pub window: Vec<GrainId>,
     /// Grains and contacts are recorded every so many load steps.
     pub record_every: usize,
+    /// Whether void cells are recorded with them.
+    pub record_voids: bool,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
     /// What the user should know before the run.
