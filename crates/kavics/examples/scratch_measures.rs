@@ -37,19 +37,6 @@ fn main() {
     let snapshot = Snapshot { assembly: &assembly, state: &state, loads: &loads, reactions: &loads };
     let window = Window::new((0..n).map(GrainId::from_index).collect(), n);
     println!("{n} grains {count} contacts");
-    if let Some(share) = std::env::args().nth(3) {
-        let share: f64 = share.parse().unwrap();
-        let mut state = state.clone();
-        for (k, s) in state.contacts.values_mut().iter_mut().enumerate() {
-            let h = ((k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / (1u64 << 24) as f64;
-            if h < share { s.property = None; }
-        }
-        let snapshot = Snapshot { state: &state, ..snapshot };
-        let best = (0..3).map(|_| { let t = cpu(); std::hint::black_box(void_cells(&snapshot)); cpu() - t }).fold(f64::INFINITY, f64::min);
-        let v = void_cells(&snapshot);
-        println!("lost {share}: {:.0} ms V {} E {} L {} C {} euler {} islands {} rattlers {} err {:.1e}", best * 1e3, v.grains, v.contacts, v.cells.len(), v.components, v.euler(), v.cells.iter().map(|c| c.islands).sum::<usize>(), v.cells.iter().map(|c| c.rattlers).sum::<usize>(), v.cells.iter().map(|c| c.area).sum::<f64>() / v.enclosed_area - 1.0);
-        return;
-    }
     println!("size contact {} state {}", size_of::<kavics::assembly::Contact>(), size_of::<ContactState>());
     let time = |name: &str, f: &dyn Fn()| {
         let best = (0..5).map(|_| { let t = cpu(); f(); cpu() - t }).fold(f64::INFINITY, f64::min);

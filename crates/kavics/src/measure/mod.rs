@@ -1,7 +1,7 @@
 //! State variables of an equilibrium, in a window: fabric, graph porosity, stress and its parts, strain, work.
 //!
 //! In: a [`Snapshot`] and a [`Window`]. Out: one small value a measure. Sums run over contacts in the order of their
-//! ids. Bojtár & Bagi (1989), eqs. 1–13. And of the whole assembly: the [`VoidCells`] of the contact graph.
+//! ids. Bojtár & Bagi (1989), eqs. 1–13.
 
 mod angle;
 mod enclosure;
