@@ -394,3 +394,10 @@ fn grains_that_nothing_holds_and_nothing_loads_are_counted() {
             .any(|w| w.starts_with("1 grain is neither held nor loaded"))
     );
 }
+
+#[test]
+fn void_cells_are_recorded_only_when_asked_for() {
+    assert!(!three("").record_voids);
+    assert!(!three("[record]\nevery = 2\n").record_voids);
+    assert!(three("[record]\nvoids = true\n").record_voids);
+}

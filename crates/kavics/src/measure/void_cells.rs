@@ -74,7 +74,7 @@ pub struct VoidCells {
 pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
     let grains = &snapshot.assembly.grains;
     let centres: Vec<Vector> = grains.ids().map(|grain| snapshot.centre(grain)).collect();
-    // Nodes lie in memory as in the plane, which saves half of the time.
+    // Nodes that are near in the plane are near in memory, so that walks stay within the cache.
     let grain_of_node = along_rows(&centres);
     let centre = |&grain: &u32| centres[grain as usize];
     let centres: Vec<Vector> = grain_of_node.iter().map(centre).collect();
