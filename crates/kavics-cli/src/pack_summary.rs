@@ -57,13 +57,12 @@ fn sizes(pack: &Pack, container: &Container) -> String {
          box               {:.digits$} wide, {:.digits$} high\n\
          highest           {:.digits$}\n\
          packing fraction  {:.6}, from the floor to the highest grain\n\
-         inside            {inside}, {margin} largest radii off the sides, {} below the top\n",
+         inside            {inside}, {margin} largest radii off sides and surface\n",
         discs.len(),
         right - left,
         top - bottom,
         whole.to,
         whole.packing_fraction(),
-        2.0 * margin,
     )
 }
 
