@@ -195,10 +195,8 @@ fn fabric_lines(fabric: SymmetricTensor) -> String {
     let [larger, smaller] = fabric.eigenvalues();
     // Rounding of an isotropic tensor has a direction that means nothing.
     let direction = if fabric.deviator() > 1e-9 {
-        format!(
-            " at {:.2} degrees",
-            fabric.principal_direction().to_degrees()
-        )
+        let degrees = fabric.principal_direction().to_degrees();
+        format!(" at {:.2} degrees", degrees.rem_euclid(180.0))
     } else {
         String::new()
     };
