@@ -57,13 +57,12 @@ fn sizes(pack: &Pack, container: &Container) -> String {
          box               {:.digits$} wide, {:.digits$} high\n\
          highest           {:.digits$}\n\
          packing fraction  {:.6}, from the floor to the highest grain\n\
-         inside            {inside}, {margin} largest radii off the sides, {} below the top\n",
+         inside            {inside}, {margin} largest radii off sides and surface\n",
         discs.len(),
         right - left,
         top - bottom,
         whole.to,
         whole.packing_fraction(),
-        2.0 * margin,
     )
 }
 
@@ -196,10 +195,8 @@ fn fabric_lines(fabric: SymmetricTensor) -> String {
     let [larger, smaller] = fabric.eigenvalues();
     // Rounding of an isotropic tensor has a direction that means nothing.
     let direction = if fabric.deviator() > 1e-9 {
-        format!(
-            " at {:.2} degrees",
-            fabric.principal_direction().to_degrees()
-        )
+        let degrees = fabric.principal_direction().to_degrees();
+        format!(" at {:.2} degrees", degrees.rem_euclid(180.0))
     } else {
         String::new()
     };

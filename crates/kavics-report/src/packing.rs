@@ -215,9 +215,8 @@ fn fractions(whole: f64, inside: Option<f64>) -> String {
     let margin = statistics::INSIDE;
     let inside = inside.map_or_else(String::new, |inside| {
         format!(
-            "; {} inside, {margin} largest radii off the sides and {} below the top",
-            fixed(inside, 4),
-            2.0 * margin
+            "; {} inside, {margin} largest radii off sides and surface",
+            fixed(inside, 4)
         )
     });
     let whole = fixed(whole, 4);

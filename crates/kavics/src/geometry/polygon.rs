@@ -41,14 +41,24 @@ impl Polygon {
         Self { corners }
     }
 
-    /// The part of it from one height to another, `[length]`.
+    /// The part of it from one height y to another, `[length]`.
     #[must_use]
     pub fn between_heights(&self, from: f64, to: f64) -> Self {
-        let level = |y, up| HalfPlane {
-            point: Vector::new(0.0, y),
-            outward: Vector::new(0.0, up),
+        self.between(Vector::new(0.0, 1.0), from, to)
+    }
+
+    /// The part of it from one x to another, `[length]`.
+    #[must_use]
+    pub fn between_widths(&self, from: f64, to: f64) -> Self {
+        self.between(Vector::new(1.0, 0.0), from, to)
+    }
+
+    fn between(&self, axis: Vector, from: f64, to: f64) -> Self {
+        let level = |at: f64, outward: Vector| HalfPlane {
+            point: axis * at,
+            outward,
         };
-        self.cut(level(from, -1.0)).cut(level(to, 1.0))
+        self.cut(level(from, -axis)).cut(level(to, axis))
     }
 
     /// Area, `[length²]`.
@@ -62,9 +72,12 @@ impl Polygon {
 
     /// Lowest and highest y; none of an empty polygon, `[length]`.
     pub fn heights(&self) -> Option<[f64; 2]> {
-        let heights = self.corners.iter().map(|corner| corner.y);
-        let low = heights.clone().reduce(f64::min)?;
-        Some([low, heights.reduce(f64::max)?])
+        extent(self.corners.iter().map(|corner| corner.y))
+    }
+
+    /// Smallest and largest x; none of an empty polygon, `[length]`.
+    pub fn widths(&self) -> Option<[f64; 2]> {
+        extent(self.corners.iter().map(|corner| corner.x))
     }
 
     /// Area of the part of a disc within it, `[length²]`.
@@ -101,6 +114,10 @@ impl Polygon {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().copied().zip(next.copied())
     }
+}
+
+fn extent(values: impl Iterator<Item = f64> + Clone) -> Option<[f64; 2]> {
+    Some([values.clone().reduce(f64::min)?, values.reduce(f64::max)?])
 }
 
 /// Area that the ray from the centre of a disc sweeps within the disc as its end goes from `a` to `b`.

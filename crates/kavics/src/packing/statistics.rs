@@ -102,17 +102,18 @@ pub fn top(grains: &PerGrain<Grain>) -> f64 {
     tops.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How far the inside of a pack is from the sides of its container, in largest radii; from its top, twice as far.
+/// How far the inside of a pack is from the sides of its container and from its surface, in largest radii.
 pub const INSIDE: f64 = 3.0;
 
-/// Packing fraction of the inside of a pack: at least [`INSIDE`] largest radii away from every side, and twice as
-/// far below the highest grain, as the surface of a dropped pack lies some diameters lower. None where this leaves
-/// nothing.
+/// Packing fraction of the inside of a pack: at least [`INSIDE`] largest radii away from every side, and as far below
+/// the lowest place of its surface. None where this leaves nothing.
 pub fn inner_packing_fraction(grains: &PerGrain<Grain>, container: &Container) -> Option<f64> {
     let radii = grains.values().iter().map(|grain| grain.radius);
-    let margin = INSIDE * radii.fold(0.0, f64::max);
+    let largest = radii.fold(0.0, f64::max);
+    let margin = INSIDE * largest;
+    let whole = Polygon::from(container);
     let below_surface = HalfPlane {
-        point: Vector::new(0.0, top(grains) - 2.0 * margin),
+        point: Vector::new(0.0, lowest_surface(grains, &whole, largest) - margin),
         outward: Vector::new(0.0, 1.0),
     };
     let within = |polygon: Polygon, side: &HalfPlane| {
@@ -121,11 +122,39 @@ pub fn inner_packing_fraction(grains: &PerGrain<Grain>, container: &Container) -
             outward: side.outward,
         })
     };
-    let whole = Polygon::from(container).cut(below_surface);
-    let inside = container.sides().iter().fold(whole, within);
+    let inside = container
+        .sides()
+        .iter()
+        .fold(whole.cut(below_surface), within);
     let discs = grains.values().iter().map(|g| (g.centre, g.radius));
     let area = inside.area();
     (area > 0.0).then(|| inside.area_of_discs(discs) / area)
+}
+
+/// Width of the columns in which the surface is looked for, in largest radii.
+const COLUMN: f64 = 4.0;
+
+/// The lowest of the highest points of columns. Columns in which the container ends below the highest grain have no
+/// surface, as those beside the peak of a triangle.
+fn lowest_surface(grains: &PerGrain<Grain>, container: &Polygon, largest: f64) -> f64 {
+    let highest = top(grains);
+    let Some([left, right]) = container.widths() else {
+        return highest;
+    };
+    let count = (((right - left) / (COLUMN * largest)) as usize).max(1);
+    let width = (right - left) / count as f64;
+    let mut tops = vec![f64::NEG_INFINITY; count];
+    for grain in grains.values() {
+        let column = (((grain.centre.x - left) / width).max(0.0) as usize).min(count - 1);
+        tops[column] = tops[column].max(grain.centre.y + grain.radius);
+    }
+    let is_open = |column: usize| {
+        let from = left + width * column as f64;
+        let heights = container.between_widths(from, from + width).heights();
+        heights.is_some_and(|[_, high]| high >= highest - largest)
+    };
+    let open = (0..count).filter(|&column| is_open(column));
+    open.map(|column| tops[column]).fold(highest, f64::min)
 }
 
 /// Packing fraction: the area of the discs within a rectangle by the area of the rectangle. Discs are cut exactly.
@@ -243,20 +272,25 @@ mod tests {
             .map(|(i, j)| [1.0 + 2.0 * f64::from(i), 1.0 + 2.0 * f64::from(j), 1.0])
             .collect();
         let fraction = |height| inner_packing_fraction(&discs(&lattice), &box_of(80.0, height));
-        // Three radii from the sides and the floor, six from the top.
-        let inside = fraction(80.0).unwrap();
-        let exact = packing_fraction(
-            &discs(&lattice),
-            Vector::new(3.0, 3.0),
-            Vector::new(77.0, 74.0),
-        );
-        assert!((inside - exact).abs() < 1e-13);
-        // The top of the grains counts, not that of the box.
+        // Three radii from the sides, the floor and the top, whether the box ends there or above.
+        let corners = [3.0, 77.0].map(|at| Vector::new(at, at));
+        let exact = packing_fraction(&discs(&lattice), corners[0], corners[1]);
+        assert!((fraction(80.0).unwrap() - exact).abs() < 1e-13);
         assert!((fraction(800.0).unwrap() - exact).abs() < 1e-13);
         assert_eq!(
             inner_packing_fraction(&discs(&[[1.0, 1.0, 1.0]]), &box_of(2.0, 2.0)),
             None
         );
+    }
+
+    #[test]
+    fn the_surface_is_found_where_the_container_is_open() {
+        // Two columns of a box, a tower in one of them; and under the flanks of a triangle there is no surface.
+        let tower = discs(&[[1.0, 1.0, 1.0], [1.0, 3.0, 1.0], [7.0, 1.0, 1.0]]);
+        let surface = |container: &Container| lowest_surface(&tower, &container.into(), 1.0);
+        assert_eq!(surface(&box_of(8.0, 9.0)), 2.0);
+        let corners = [(0.0, 0.0), (8.0, 0.0), (0.0, 4.5)].map(|(x, y)| Vector::new(x, y));
+        assert_eq!(surface(&Container::polygon(&corners)), 4.0);
     }
 
     #[test]
