@@ -407,7 +407,7 @@ fn hexagonal_lattices_have_their_dual_length() {
     check_contact_theorem(&pack);
     let graph = pack.graph(Between::Touching);
     let inner = |s: &&Site| {
-        let p = s.tangent_point;
+        let p = s.tangent_point(&pack.grains());
         p.x > 2.6 && p.x < pack.width - 2.6 && p.y > 1.5 && p.y < pack.height - 1.5
     };
     let inner: Vec<_> = graph.sites.iter().filter(inner).collect();
@@ -530,7 +530,7 @@ fn shapings_of_a_pair_in_a_wide_box() {
     let pack = Pack::new(30.0, 30.0, &[(10.0, 12.0, 1.0), (15.0, 12.0, 4.0)]);
     let site = pack.graph(Between::Touching).sites[0];
     assert_eq!(site.edge_parts, [12.0, 18.0]);
-    assert_eq!(site.tangent_point, Vector::new(11.0, 12.0));
+    assert_eq!(site.tangent_point(&pack.grains()), Vector::new(11.0, 12.0));
     let contact = |dual_length, contact_point| {
         let shaping = Shaping {
             dual_length,

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::assembly::{Contact, Grain, Partner, Side};
 use crate::geometry::{
-    Container, DualEdge, Edges, Grid, HalfPlane, NearPair, PowerDiagram, SideEdge, Vector,
+    Container, Disc, DualEdge, Edges, Grid, HalfPlane, PowerDiagram, SideEdge, Vector,
     power_diagram_of, spatial_order,
 };
 use crate::ids::{GrainId, Id, PerGrain, PerSide, PropertyId, SideId};
@@ -52,8 +52,6 @@ pub struct Site {
     pub normal: Vector,
     /// Distance of the centres, or for a side the radius, `[length]`.
     pub branch_length: f64,
-    /// Where the dual edge's line meets the branch; for a side the grain's point nearest to it, `[length]`.
-    pub tangent_point: Vector,
     /// The dual edge on the side of −t and of +t of the tangent point, `[length]`; one may be negative
     /// between grains that do not touch.
     pub edge_parts: [f64; 2],
@@ -109,19 +107,21 @@ pub fn contact_graph(
     let discs = grains.values();
     let mean_radius = discs.iter().map(|g| g.radius).sum::<f64>() / discs.len().max(1) as f64;
     // Neighbours get near numbers; the caller's come back with the sites.
-    let centres: Vec<Vector> = discs.iter().map(|g| g.centre).collect();
-    let order = spatial_order(&centres);
+    let order = spatial_order(discs.iter().map(|grain| &grain.centre));
     let scale = 1.0 / unit;
-    let at = |&id: &u32| discs[id as usize];
-    let centres: Vec<Vector> = order.iter().map(|id| at(id).centre * scale).collect();
-    let radii: Vec<f64> = order.iter().map(|id| at(id).radius * scale).collect();
-    let grid = Grid::new(&centres, &radii);
-    let near = grid.near_pairs(scale * touching_tolerance.max(LIKELY * mean_radius));
-    let edges = match between {
-        Between::Touching => Edges::OfNearPairs,
-        Between::Neighbours => Edges::All,
+    let disc = |(&id, place): (&u32, u32)| Disc {
+        centre: discs[id as usize].centre * scale,
+        radius: discs[id as usize].radius * scale,
+        index: place,
     };
-    let diagram = power_diagram_of(&grid, &container.scaled(scale), &near, edges);
+    let grid = Grid::of_discs(order.iter().zip(0..).map(disc).collect());
+    // Edges of neighbours that nearly touch help to find the others.
+    let (near, edges) = match between {
+        Between::Touching => (touching_tolerance, Edges::OfNearPairs),
+        Between::Neighbours => (touching_tolerance.max(LIKELY * mean_radius), Edges::All),
+    };
+    let near = grid.near_pairs(scale * near);
+    let mut diagram = power_diagram_of(&grid, &container.scaled(scale), &near, edges);
     let choice = Choice {
         grains,
         sides,
@@ -132,10 +132,10 @@ pub fn contact_graph(
         touching_tolerance,
         no_length: NO_LENGTH * mean_radius,
     };
-    let joints = choice.joints(&near, &diagram);
+    let edges = choice.edges(&mut diagram);
     let (at_sides, cell_area) = (choice.at_sides(&diagram), cell_area(&diagram, &order, unit));
     let (sites, triangles) = rayon::join(
-        || choice.sites(joints, at_sides),
+        || choice.sites(&edges, at_sides),
         || triangles(diagram, &order),
     );
     ContactGraph {
@@ -185,37 +185,64 @@ struct Choice<'a> {
 
 impl Choice<'_> {
     /// Between grains by (first, second), then those with sides by (first, second).
-    fn sites(&self, joints: Vec<DualEdge>, mut at_sides: Vec<Site>) -> Vec<Site> {
-        let joints = sorted(joints, self.grains.len());
+    fn sites(&self, edges: &[DualEdge], mut at_sides: Vec<Site>) -> Vec<Site> {
         at_sides.sort_unstable_by_key(|site| (site.first, site.second));
-        let mut sites = Vec::with_capacity(joints.len() + at_sides.len());
-        sites.par_extend(joints.par_iter().map(|joint| self.site(joint)));
+        let site = |&[_, edge]: &[u32; 2]| self.site(&self.joint(&edges[edge as usize]));
+        let mut sites = Vec::with_capacity(edges.len() + at_sides.len());
+        sites.par_extend(self.sorted(edges).par_iter().map(site));
         sites.append(&mut at_sides);
         sites
     }
 
-    /// Pairs of grains that carry a contact, with their edge; touching pairs without edge too.
-    fn joints(&self, near: &[NearPair], diagram: &PowerDiagram) -> Vec<DualEdge> {
-        let neighbours = self.between == Between::Neighbours;
-        let touching = |(pair, &parts): (&NearPair, &[f64; 2])| {
-            let touches = pair.gap * self.unit <= self.touching_tolerance;
-            let wanted = touches && !(neighbours && self.has_length(parts));
-            wanted.then(|| self.joint(pair.first, pair.second, parts))
-        };
-        let pairs = near.iter().zip(&diagram.near_edges);
-        let mut joints: Vec<DualEdge> = pairs.filter_map(touching).collect();
-        let edges = diagram
-            .edges
-            .iter()
-            .filter(|edge| self.has_length(edge.parts));
-        joints.extend(edges.map(|edge| self.joint(edge.first, edge.second, edge.parts)));
-        joints
+    /// The edges by the ids of their grains, as the higher id and the number of the edge: counting sort by the lower
+    /// id, then each grain's own.
+    fn sorted(&self, edges: &[DualEdge]) -> Vec<[u32; 2]> {
+        let id = |place: u32| self.order[place as usize];
+        let lower = |edge: &DualEdge| id(edge.first).min(id(edge.second)) as usize;
+        let mut start = vec![0_u32; self.grains.len() + 1];
+        for edge in edges {
+            start[lower(edge) + 1] += 1;
+        }
+        for grain in 1..start.len() {
+            start[grain] += start[grain - 1];
+        }
+        let mut sorted = vec![[0; 2]; edges.len()];
+        for (number, edge) in (0..).zip(edges) {
+            // Starts move to the ends.
+            let place = &mut start[lower(edge)];
+            sorted[*place as usize] = [id(edge.first).max(id(edge.second)), number];
+            *place += 1;
+        }
+        let mut own = &mut sorted[..];
+        let mut begin = 0;
+        for &end in &start[..self.grains.len()] {
+            let (now, rest) = own.split_at_mut((end - begin) as usize);
+            now.sort_unstable();
+            (own, begin) = (rest, end);
+        }
+        sorted
+    }
+
+    /// The edges that carry a contact, and touching pairs without edge.
+    fn edges(&self, diagram: &mut PowerDiagram) -> Vec<DualEdge> {
+        let mut edges = std::mem::take(&mut diagram.near_edges);
+        if self.between == Between::Neighbours {
+            // Without neighbours, the near pairs are those that touch.
+            edges.retain(|edge| !self.has_length(edge) && self.touches(edge));
+            let all = std::mem::take(&mut diagram.edges);
+            edges.extend(all.into_iter().filter(|edge| self.has_length(edge)));
+        }
+        edges
+    }
+
+    fn touches(&self, edge: &DualEdge) -> bool {
+        self.site(&self.joint(edge)).gap <= self.touching_tolerance
     }
 
     /// An edge between two places, by the ids of their grains, the lower first.
-    fn joint(&self, first: u32, second: u32, parts: [f64; 2]) -> DualEdge {
-        let [a, b] = [first, second].map(|place| self.order[place as usize]);
-        let [before, after] = parts.map(|part| part * self.unit);
+    fn joint(&self, edge: &DualEdge) -> DualEdge {
+        let [a, b] = [edge.first, edge.second].map(|place| self.order[place as usize]);
+        let [before, after] = edge.parts.map(|part| part * self.unit);
         // Seen from the other grain, n and t are reversed.
         let parts = if a < b {
             [before, after]
@@ -229,8 +256,8 @@ impl Choice<'_> {
         }
     }
 
-    fn has_length(&self, parts: [f64; 2]) -> bool {
-        (parts[0] + parts[1]) * self.unit > self.no_length
+    fn has_length(&self, edge: &DualEdge) -> bool {
+        (edge.parts[0] + edge.parts[1]) * self.unit > self.no_length
     }
 
     fn site(&self, joint: &DualEdge) -> Site {
@@ -244,17 +271,11 @@ impl Choice<'_> {
         } else {
             Vector::new(1.0, 0.0)
         };
-        let along = if l > 0.0 {
-            0.5 * (l + (a.radius - b.radius) * (a.radius + b.radius) / l)
-        } else {
-            0.0
-        };
         Site {
             first: Partner::Grain(first),
             second: Partner::Grain(second),
             normal,
             branch_length: l,
-            tangent_point: a.centre + normal * along,
             edge_parts: joint.parts,
             gap: l - (a.radius + b.radius),
         }
@@ -276,41 +297,36 @@ impl Choice<'_> {
         let joined = side.present
             && gap <= self.reach[id].max(self.touching_tolerance)
             && shadow > self.no_length;
-        joined.then(|| Site {
+        joined.then_some(Site {
             first: Partner::Grain(grain),
             second: Partner::Side(id),
             normal: side.outward,
             branch_length: radius,
-            tangent_point: centre + side.outward * radius,
             edge_parts: parts,
             gap,
         })
     }
 }
 
-/// Edges by (first, second): counting sort by the first, then each grain's own.
-fn sorted(edges: Vec<DualEdge>, grains: usize) -> Vec<DualEdge> {
-    let mut start = vec![0_u32; grains + 1];
-    for edge in &edges {
-        start[edge.first as usize + 1] += 1;
-    }
-    for grain in 0..grains {
-        start[grain + 1] += start[grain];
-    }
-    let mut next = start.clone();
-    let mut sorted = edges.clone();
-    for edge in edges {
-        let place = &mut next[edge.first as usize];
-        sorted[*place as usize] = edge;
-        *place += 1;
-    }
-    for own in start.windows(2) {
-        sorted[own[0] as usize..own[1] as usize].sort_unstable_by_key(|edge| edge.second);
-    }
-    sorted
-}
-
 impl Site {
+    /// Where the dual edge's line meets the branch; for a side the grain's point nearest to it, `[length]`.
+    pub fn tangent_point(&self, grains: &PerGrain<Grain>) -> Vector {
+        let grain = |partner| match partner {
+            Partner::Grain(grain) => Some(grains[grain]),
+            Partner::Side(_) => None,
+        };
+        let l = self.branch_length;
+        let along = match (grain(self.first), grain(self.second)) {
+            (Some(a), Some(b)) if l > 0.0 => {
+                0.5 * (l + (a.radius - b.radius) * (a.radius + b.radius) / l)
+            }
+            (Some(_), Some(_)) => 0.0,
+            _ => l,
+        };
+        let centre = grain(self.first).map_or(Vector::default(), |grain| grain.centre);
+        centre + self.normal * along
+    }
+
     /// The contact that a contact property makes of this site.
     ///
     /// Capped, a part of the dual edge reaches at most g = √(R_i·R_j) from the tangent point, at a side g = R: where
@@ -333,12 +349,12 @@ impl Site {
         };
         let halves = [0.5 * s; 2];
         let (point, dual_parts) = match (shaping.contact_point, shaping.dual_length) {
-            (ContactPoint::Tangent, DualLength::Number(_)) => (self.tangent_point, halves),
-            (ContactPoint::Tangent, _) => (self.tangent_point, kept),
+            (ContactPoint::Tangent, DualLength::Number(_)) => (self.tangent_point(grains), halves),
+            (ContactPoint::Tangent, _) => (self.tangent_point(grains), kept),
             (ContactPoint::Midpoint, _) => {
                 let offset = 0.5 * (kept[1] - kept[0]);
                 let tangent = self.normal.quarter_turn();
-                (self.tangent_point + tangent * offset, halves)
+                (self.tangent_point(grains) + tangent * offset, halves)
             }
         };
         Contact {

@@ -26,17 +26,26 @@ pub struct HalfEdge {
 pub struct Embedding {
     start: Vec<u32>,
     half_edges: Vec<HalfEdge>,
-    forward: Vec<u32>,
+    /// Both slots of each edge.
+    slots: Vec<u32>,
 }
 
 impl Embedding {
     /// The embedding of the graph with nodes at `points` and these edges between different nodes; O(N).
     pub fn new(points: &[Vector], edges: &[[u32; 2]]) -> Self {
-        let start = starts(points.len(), edges);
+        Self::of(points, edges.iter().copied())
+    }
+
+    /// The same of edges that come one by one.
+    pub(super) fn of(
+        points: &[Vector],
+        edges: impl ExactSizeIterator<Item = [u32; 2]> + Clone,
+    ) -> Self {
+        let start = starts(points.len(), edges.clone());
         // At first `twin` is the number of the edge, doubled, and one more for the way back.
         let mut half_edges = vec![HalfEdge::default(); 2 * edges.len()];
         let mut next = start.clone();
-        for (k, &[i, j]) in edges.iter().enumerate() {
+        for (k, [i, j]) in edges.enumerate() {
             let number = 2 * k as u32;
             for (from, to, twin) in [(i, j, number), (j, i, number + 1)] {
                 let place = &mut next[from as usize];
@@ -46,18 +55,18 @@ impl Embedding {
         }
         drop(next);
         sort_stars(points, &start, &mut half_edges);
-        let mut slot = vec![0; half_edges.len()];
+        let mut slots = vec![0; half_edges.len()];
         for (place, half_edge) in half_edges.iter().enumerate() {
-            slot[half_edge.twin as usize] = place as u32;
+            slots[half_edge.twin as usize] = place as u32;
         }
-        let link = |half_edge: &mut HalfEdge| half_edge.twin = slot[half_edge.twin as usize ^ 1];
+        let link = |half_edge: &mut HalfEdge| half_edge.twin = slots[half_edge.twin as usize ^ 1];
         half_edges
             .par_chunks_mut(4 * NODES_A_TASK)
             .for_each(|chunk| chunk.iter_mut().for_each(link));
         Self {
             start,
             half_edges,
-            forward: slot.into_iter().step_by(2).collect(),
+            slots,
         }
     }
 
@@ -83,8 +92,7 @@ impl Embedding {
 
     /// The slots of an edge: from its first node, and from its second.
     pub fn slots(&self, edge: usize) -> [u32; 2] {
-        let forward = self.forward[edge];
-        [forward, self.half_edges[forward as usize].twin]
+        [self.slots[2 * edge], self.slots[2 * edge + 1]]
     }
 
     /// The nodes that a node has an edge with.
@@ -107,9 +115,9 @@ impl Embedding {
 }
 
 /// Where the star of each node starts.
-fn starts(nodes: usize, edges: &[[u32; 2]]) -> Vec<u32> {
+fn starts(nodes: usize, edges: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut start = vec![0_u32; nodes + 1];
-    for &node in edges.as_flattened() {
+    for node in edges.flatten() {
         start[node as usize + 1] += 1;
     }
     for node in 0..nodes {
@@ -132,12 +140,31 @@ fn sort_stars(points: &[Vector], start: &[u32], half_edges: &mut [HalfEdge]) {
             };
             sorted.clear();
             sorted.extend(star.iter().map(direction));
-            sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.to.cmp(&b.1.to)));
+            sort_by_direction(&mut sorted);
             for (half_edge, (_, by_angle)) in star.iter_mut().zip(&sorted) {
                 *half_edge = *by_angle;
             }
         }
     });
+}
+
+/// Equal directions by the nodes they go to; insertion, as stars are small.
+fn sort_by_direction(star: &mut [(f64, HalfEdge)]) {
+    let after =
+        |a: &(f64, HalfEdge), b: &(f64, HalfEdge)| a.0 > b.0 || a.0 == b.0 && a.1.to > b.1.to;
+    if star.len() > 32 {
+        star.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.to.cmp(&b.1.to)));
+        return;
+    }
+    for k in 1..star.len() {
+        let item = star[k];
+        let mut place = k;
+        while place > 0 && after(&star[place - 1], &item) {
+            star[place] = star[place - 1];
+            place -= 1;
+        }
+        star[place] = item;
+    }
 }
 
 /// Cuts what belongs to the slots into the parts of one task each, with the nodes they leave.

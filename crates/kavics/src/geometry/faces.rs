@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::geometry::Vector;
 use crate::geometry::container::{Container, HalfPlane};
-use crate::geometry::embedding::{Embedding, by_nodes};
+use crate::geometry::embedding::{Embedding, HalfEdge, NODES_A_TASK, by_nodes};
 use crate::geometry::lifted::Lifted;
 use crate::geometry::near_pairs::Disc;
 use crate::geometry::outer_triangles::Lowest;
@@ -95,6 +95,8 @@ struct Task<'a> {
     face: Vec<Corner>,
     chains: Vec<(usize, usize)>,
     found: Vec<Found>,
+    /// What the face gives to the cells of its corners.
+    sums: Vec<FaceCell>,
 }
 
 /// A triangle of a face: its corners' places in the face, the edge it lies on first; and its radical centre.
@@ -224,8 +226,13 @@ impl Triangulation<'_> {
             }
             task.found.push(triangle);
         }
+        task.sums.clear();
+        task.sums.resize(last + 1, FaceCell::default());
         for k in 0..task.found.len() {
             self.keep(task.found[k], last, task);
+        }
+        for k in 0..=last {
+            task.add(task.face[k].disc.index, task.sums[k]);
         }
         true
     }
@@ -281,36 +288,43 @@ impl Triangulation<'_> {
                 task.diagonals.push(half);
             }
         }
-        for (number, area) in numbers.into_iter().zip(areas) {
-            let cell = FaceCell {
+        for (corner, area) in triangle.corners.into_iter().zip(areas) {
+            task.sums[corner].add(FaceCell {
                 area,
                 fingerprint: mark,
                 open: false,
-            };
-            task.add(number, cell);
+            });
         }
     }
 
     /// Opens the ends of edges that, by their length, may not belong to the triangulation.
     fn open_edges_without_length(&self, faces: &mut Faces) {
-        for node in 0..self.discs.len() as u32 {
-            for slot in self.graph.star(node) {
-                let half_edge = self.graph.half_edges()[slot as usize];
-                if half_edge.to < node {
-                    continue;
-                }
-                let [a, b] = [node, half_edge.to].map(|n| &self.discs[n as usize]);
-                let product = faces.doubled_areas[slot as usize]
-                    + faces.doubled_areas[half_edge.twin as usize];
-                // What rounding the doubled_areas of the lifted discs can do to it.
-                let radii = a.radius + b.radius;
-                let error = 1e3 * (self.lifted.noise + f64::EPSILON * radii * radii);
-                if product <= error {
-                    faces.cells[node as usize].open = true;
-                    faces.cells[half_edge.to as usize].open = true;
+        let nodes = self.discs.len() as u32;
+        let firsts: Vec<u32> = (0..nodes).step_by(NODES_A_TASK).collect();
+        let of_task = |&first: &u32| {
+            let mut ends = Vec::new();
+            for node in first..(first + NODES_A_TASK as u32).min(nodes) {
+                for slot in self.graph.star(node) {
+                    let HalfEdge { to, twin } = self.graph.half_edges()[slot as usize];
+                    let doubled = [slot, twin].map(|slot| faces.doubled_areas[slot as usize]);
+                    if to > node && self.may_be_nothing(node, to, doubled[0] + doubled[1]) {
+                        ends.extend([node, to]);
+                    }
                 }
             }
+            ends
+        };
+        let found: Vec<Vec<u32>> = firsts.par_iter().map(of_task).collect();
+        for disc in found.into_iter().flatten() {
+            faces.cells[disc as usize].open = true;
         }
+    }
+
+    /// Whether an edge may have no dual length, by its length times the dual length.
+    fn may_be_nothing(&self, first: u32, second: u32, product: f64) -> bool {
+        let [a, b] = [first, second].map(|disc| self.discs[disc as usize].radius);
+        // What rounding the heights of the lifted discs can do to it.
+        product <= 1e3 * (self.lifted.noise + f64::EPSILON * (a + b) * (a + b))
     }
 }
 
@@ -367,6 +381,7 @@ impl<'a> Task<'a> {
             face: Vec::new(),
             chains: Vec::new(),
             found: Vec::new(),
+            sums: Vec::new(),
         }
     }
 

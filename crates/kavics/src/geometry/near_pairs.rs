@@ -1,4 +1,5 @@
-//! Near pairs of discs: cell grids, one for each octave of the radius, so that unequal discs cost no more than equal ones.
+//! Near pairs of discs: cell grids, one for each two octaves of the radius, so that unequal discs cost little more than
+//! equal ones.
 
 use std::ops::Range;
 
@@ -8,6 +9,9 @@ use crate::geometry::Vector;
 
 /// Discs that one task looks at; fixed, so that the result does not depend on the number of threads.
 const DISCS_A_TASK: usize = 8192;
+
+/// Octaves of the radius in one level.
+const OCTAVES: u64 = 2;
 
 /// A disc and its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +35,7 @@ pub struct NearPair {
     pub gap: f64,
 }
 
-/// Discs of one octave of the radius, sorted by square cells; a row of cells is one contiguous range of discs.
+/// Discs of similar radii, sorted by square cells; a row of cells is one contiguous range of discs.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
     origin: Vector,
@@ -44,13 +48,11 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// Counting sort by cells, stable, of the discs of one octave.
-    fn new(discs: &[Disc], of_octave: u64) -> Self {
-        let own = || discs.iter().filter(|d| octave(d.radius) == of_octave);
-        let count = own().count();
-        let mut level = Self::cells(own(), count);
+    /// Counting sort by cells, stable.
+    fn new(discs: &[Disc]) -> Self {
+        let mut level = Self::cells(discs);
         let mut start = vec![0_u32; level.columns * level.rows + 1];
-        for disc in own() {
+        for disc in discs {
             start[level.cell(disc) + 1] += 1;
         }
         for c in 1..start.len() {
@@ -61,8 +63,8 @@ impl Level {
             radius: 0.0,
             index: 0,
         };
-        let mut sorted = vec![none; count];
-        for disc in own() {
+        let mut sorted = vec![none; discs.len()];
+        for disc in discs {
             // Starts move to the ends, which are the starts of the next cells.
             let place = &mut start[level.cell(disc)];
             sorted[*place as usize] = *disc;
@@ -76,11 +78,11 @@ impl Level {
     }
 
     /// Cells of at least the largest diameter, not more than two a disc; yet without discs.
-    fn cells<'a>(discs: impl Iterator<Item = &'a Disc> + Clone, count: usize) -> Self {
-        let (low, high) = extent(discs.clone().map(|d| d.centre));
+    fn cells(discs: &[Disc]) -> Self {
+        let (low, high) = extent(discs.iter().map(|d| d.centre));
         let (width, height) = (high.x - low.x, high.y - low.y);
-        let largest_radius = discs.fold(0.0, |m: f64, d| m.max(d.radius));
-        let cells = 2.0 * count as f64;
+        let largest_radius = discs.iter().fold(0.0, |m: f64, d| m.max(d.radius));
+        let cells = 2.0 * discs.len() as f64;
         // A little more than a diameter, so that what nearly touches lies in neighbouring cells.
         let cell = (2.05 * largest_radius)
             .max((width * height / cells).sqrt())
@@ -124,7 +126,7 @@ impl Level {
     }
 }
 
-/// Cell grids of discs, one for each octave of the radius.
+/// Cell grids of discs, one for each two octaves of the radius.
 #[derive(Clone, Debug)]
 pub struct Grid {
     pub(super) discs: Vec<Disc>,
@@ -142,14 +144,25 @@ impl Grid {
         Self::of_discs(centres.iter().zip(radii).enumerate().map(disc).collect())
     }
 
-    /// The grid of these discs; O(N).
-    pub(super) fn of_discs(discs: Vec<Disc>) -> Self {
-        let mut octaves = vec![false; 1 << 12];
+    /// The grid of these discs, each with its place among them as number; O(N).
+    pub fn of_discs(discs: Vec<Disc>) -> Self {
+        let smallest = discs.iter().map(|disc| octave(disc.radius)).min();
+        let size = |disc: &Disc| ((octave(disc.radius) - smallest.unwrap_or(0)) / OCTAVES) as usize;
+        let mut counts = vec![0_usize; 1 << 12];
         for disc in &discs {
-            octaves[octave(disc.radius) as usize] = true;
+            counts[size(disc)] += 1;
         }
-        let octaves: Vec<u64> = (0..).zip(octaves).filter(|o| o.1).map(|o| o.0).collect();
-        let levels = octaves.par_iter().map(|&o| Level::new(&discs, o)).collect();
+        let one_size = counts[0] == discs.len();
+        let levels = if one_size && !discs.is_empty() {
+            vec![Level::new(&discs)]
+        } else {
+            let mut sizes: Vec<_> = counts.iter().map(|&n| Vec::with_capacity(n)).collect();
+            for disc in &discs {
+                sizes[size(disc)].push(*disc);
+            }
+            sizes.retain(|discs| !discs.is_empty());
+            sizes.par_iter().map(|discs| Level::new(discs)).collect()
+        };
         Self { discs, levels }
     }
 
@@ -260,8 +273,8 @@ fn octave(radius: f64) -> u64 {
 }
 
 /// The numbers of points along rows of cells with about two points each: neighbours come near each other.
-pub fn spatial_order(points: &[Vector]) -> Vec<u32> {
-    let (low, high) = extent(points.iter().copied());
+pub fn spatial_order<'a>(points: impl ExactSizeIterator<Item = &'a Vector> + Clone) -> Vec<u32> {
+    let (low, high) = extent(points.clone().copied());
     let (width, height) = (high.x - low.x, high.y - low.y);
     let cells = 0.5 * points.len() as f64;
     let side = (width * height / cells)
@@ -274,7 +287,7 @@ pub fn spatial_order(points: &[Vector]) -> Vec<u32> {
     // Infinite coordinates are beyond every cell, NaN is before.
     let cell = |p: &Vector| along(p.y - low.y, height) * columns + along(p.x - low.x, width);
     let mut next = vec![0_u32; columns * rows + 1];
-    for point in points {
+    for point in points.clone() {
         next[cell(point) + 1] += 1;
     }
     for c in 1..next.len() {
@@ -347,14 +360,15 @@ mod tests {
         let points: Vec<_> = (0..64)
             .map(|k| Vector::new(f64::from(k / 8), f64::from(k % 8)))
             .collect();
-        let order = spatial_order(&points);
+        let order = spatial_order(points.iter());
         let rows: Vec<f64> = order.iter().map(|&k| points[k as usize].y).collect();
         assert!(rows.windows(2).all(|pair| pair[1] > pair[0] - 1.5));
         assert_eq!(
-            spatial_order(&[Vector::new(f64::NAN, 1.0), Vector::new(3.0, f64::INFINITY)]).len(),
+            spatial_order([Vector::new(f64::NAN, 1.0), Vector::new(3.0, f64::INFINITY)].iter())
+                .len(),
             2
         );
-        assert!(spatial_order(&[]).is_empty());
+        assert!(spatial_order([].iter()).is_empty());
     }
 
     #[test]

@@ -216,9 +216,10 @@ impl<'a> Lowest<'a> {
             return;
         }
         let power = q_squared + radii - 2.0 * self.foot * self.along.dot(q);
-        let height = 0.5 * power / up;
+        let inverse = 1.0 / up;
+        let height = 0.5 * power * inverse;
         let error = 16.0 * turn + 4.0 * self.lifted.noise + height.abs() * 2.0 * turn;
-        let error = error / up.abs();
+        let error = error * inverse.abs();
         let better = if up > turn && (height - self.height).abs() > error + self.slack {
             height < self.height
         } else {

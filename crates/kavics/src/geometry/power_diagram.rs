@@ -6,7 +6,7 @@
 use crate::geometry::Vector;
 use crate::geometry::container::Container;
 use crate::geometry::cutting::{Clipping, CutOut};
-use crate::geometry::embedding::Embedding;
+use crate::geometry::embedding::{Embedding, HalfEdge};
 use crate::geometry::faces::{Faces, Triangulation};
 use crate::geometry::lifted::Lifted;
 use crate::geometry::near_pairs::{Disc, Grid, NearPair};
@@ -51,8 +51,8 @@ pub struct SideEdge {
 pub struct PowerDiagram {
     /// Area of each cell, `[length²]`.
     pub cell_area: Vec<f64>,
-    /// The common edge of each near pair, of no length where there is none; its parts as in [`DualEdge`].
-    pub near_edges: Vec<[f64; 2]>,
+    /// The common edge of each near pair, of no length where there is none; neighbours come near each other.
+    pub near_edges: Vec<DualEdge>,
     /// All edges between cells by (first, second), where wanted; edges of no length may be among them.
     pub edges: Vec<DualEdge>,
     /// Edges on the container by (disc, side).
@@ -99,10 +99,9 @@ pub fn power_diagram_of(
     edges: Edges,
 ) -> PowerDiagram {
     let centres: Vec<Vector> = grid.discs.iter().map(|disc| disc.centre).collect();
-    let (links, unlinked) = links(&grid.discs, near);
-    let (lifted, graph) = rayon::join(
+    let (lifted, (graph, unlinked)) = rayon::join(
         || Lifted::new(&grid.discs, &centres, container.middle()),
-        || Embedding::new(&centres, &links),
+        || graph(&grid.discs, &centres, near),
     );
     let size = container.size();
     let triangulation = Triangulation {
@@ -131,30 +130,29 @@ pub fn power_diagram_of(
         ..PowerDiagram::default()
     };
     if edges == Edges::All {
-        diagram.edges = all_edges(near, &diagram.near_edges, &mut faces, &mut cut);
+        diagram.edges = all_edges(&diagram.near_edges, &mut faces, &mut cut);
     }
     diagram.add_cells(faces, cut);
     diagram
 }
 
-/// Whether a near pair is an edge of the graph: its discs touch but for a small share of the smaller radius.
-fn is_link(discs: &[Disc], pair: &NearPair) -> bool {
-    let [a, b] = [pair.first, pair.second].map(|disc| discs[disc as usize].radius);
-    pair.gap.abs() <= NEAR * a.min(b)
-}
-
-/// The edges of the graph, and the discs of the other near pairs.
-fn links(discs: &[Disc], near: &[NearPair]) -> (Vec<[u32; 2]>, Vec<u32>) {
-    let (mut links, mut unlinked) = (Vec::with_capacity(near.len()), Vec::new());
-    for pair in near {
-        let ends = [pair.first, pair.second];
-        if is_link(discs, pair) {
-            links.push(ends);
-        } else {
-            unlinked.extend(ends);
-        }
+/// The graph of the near pairs whose discs touch but for a small share of the smaller radius, and the discs of the
+/// others.
+fn graph(discs: &[Disc], centres: &[Vector], near: &[NearPair]) -> (Embedding, Vec<u32>) {
+    let radius = |disc: u32| discs[disc as usize].radius;
+    let smallest = discs
+        .iter()
+        .fold(f64::INFINITY, |r, disc| r.min(disc.radius));
+    let touch = |pair: &NearPair, smaller: f64| pair.gap.abs() <= NEAR * smaller;
+    let ends = |pair: &NearPair| [pair.first, pair.second];
+    if near.iter().all(|pair| touch(pair, smallest)) {
+        return (Embedding::of(centres, near.iter().map(ends)), Vec::new());
     }
-    (links, unlinked)
+    let is_link = |&&pair: &&NearPair| touch(&pair, radius(pair.first).min(radius(pair.second)));
+    let (links, others): (Vec<_>, Vec<_>) = near.iter().partition(is_link);
+    let links: Vec<[u32; 2]> = links.into_iter().map(ends).collect();
+    let others = others.into_iter().flat_map(ends).collect();
+    (Embedding::new(centres, &links), others)
 }
 
 /// The edges of the near pairs: the disc with the lower number says what there is.
@@ -164,43 +162,54 @@ fn near_edges(
     cut: &CutOut,
     graph: &Embedding,
     discs: &[Disc],
-) -> Vec<[f64; 2]> {
-    let mut links = 0..;
-    let parts = |pair: &NearPair| {
-        let link = is_link(discs, pair).then(|| links.next()).flatten();
-        if faces.cells[pair.first as usize].open {
-            return cut.parts(pair.first, pair.second);
+) -> Vec<DualEdge> {
+    let of_faces = |disc: &u32| !faces.cells[*disc as usize].open;
+    let all = 0..discs.len() as u32;
+    let mut edges = Vec::with_capacity(near.len());
+    for disc in all.filter(of_faces) {
+        edges.extend(edges_of_faces(disc, faces, graph, discs));
+    }
+    let of_cut = near
+        .iter()
+        .filter(|pair| faces.cells[pair.first as usize].open);
+    edges.extend(of_cut.map(|&NearPair { first, second, .. }| DualEdge {
+        first,
+        second,
+        parts: cut.parts(first, second),
+    }));
+    edges
+}
+
+/// The edges of the graph from a disc to those of higher numbers, from the triangles on both sides.
+fn edges_of_faces(
+    first: u32,
+    faces: &Faces,
+    graph: &Embedding,
+    discs: &[Disc],
+) -> impl Iterator<Item = DualEdge> {
+    let higher = graph
+        .star(first)
+        .filter(move |&slot| graph.half_edges()[slot as usize].to > first);
+    higher.map(move |slot| {
+        let HalfEdge { to, twin } = graph.half_edges()[slot as usize];
+        let branch = discs[to as usize].centre - discs[first as usize].centre;
+        let inverse = 1.0 / branch.length();
+        let part = |slot: u32| faces.doubled_areas[slot as usize] * inverse;
+        DualEdge {
+            first,
+            second: to,
+            parts: [part(twin), part(slot)],
         }
-        let [a, b] = [pair.first, pair.second].map(|disc| discs[disc as usize].centre);
-        let inverse = 1.0 / (b - a).length();
-        let slots = graph.slots(link.unwrap_or_default());
-        let [after, before] = slots.map(|slot| faces.doubled_areas[slot as usize]);
-        [before * inverse, after * inverse]
-    };
-    near.iter().map(parts).collect()
+    })
 }
 
 /// All edges by (first, second): of near pairs, across faces, and of the cells that were cut out.
-fn all_edges(
-    near: &[NearPair],
-    near_edges: &[[f64; 2]],
-    faces: &mut Faces,
-    cut: &mut CutOut,
-) -> Vec<DualEdge> {
+fn all_edges(near_edges: &[DualEdge], faces: &mut Faces, cut: &mut CutOut) -> Vec<DualEdge> {
     let diagonals = whole_diagonals(std::mem::take(&mut faces.diagonals));
-    let of_faces = |first: u32| !faces.cells[first as usize].open;
-    let edge = |(pair, &parts): (&NearPair, &[f64; 2])| DualEdge {
-        first: pair.first,
-        second: pair.second,
-        parts,
-    };
-    let of_graph = near.iter().zip(near_edges).map(edge);
+    let of_graph = near_edges.iter().copied().chain(diagonals);
+    let of_faces = |edge: &DualEdge| !faces.cells[edge.first as usize].open;
     let mut edges = std::mem::take(&mut cut.diagram.edges);
-    edges.extend(
-        of_graph
-            .chain(diagonals)
-            .filter(|edge| of_faces(edge.first)),
-    );
+    edges.extend(of_graph.filter(of_faces));
     edges.sort_unstable_by_key(|edge| (edge.first, edge.second));
     edges
 }
@@ -250,7 +259,7 @@ impl PowerDiagram {
         }
         let of_sides = self.side_edges.iter_mut().map(|edge| &mut edge.parts);
         let parts = self.edges.iter_mut().map(|edge| &mut edge.parts);
-        let of_near = self.near_edges.iter_mut();
+        let of_near = self.near_edges.iter_mut().map(|edge| &mut edge.parts);
         for part in parts.chain(of_sides).chain(of_near).flatten() {
             *part *= unit;
         }

@@ -5,10 +5,10 @@ use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::sides::side_called;
-use crate::assembly::{self, Assembly, Contact, ContactGraph, Partner, Side, Site};
+use crate::assembly::{self, Assembly, Contact, ContactGraph, Grain, Partner, Side, Site};
 use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
 use crate::geometry::Vector;
-use crate::ids::{PerContact, PerSide, PropertyId};
+use crate::ids::{PerContact, PerGrain, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
 
 /// The assembly: grains, sides, contacts and dual graph.
@@ -28,7 +28,11 @@ pub fn assembly(
     let tolerance = plan.touching_tolerance * placed.mean_radius;
     let graph = assembly::contact_graph(&placed.grains, &sides, plan.between, &reach, tolerance);
     sides_touch(plan, &graph, &placed, &sides, checker);
-    let properties = zoned(plan, &graph, seed, checker)?;
+    let met = Met {
+        graph: &graph,
+        grains: &placed.grains,
+    };
+    let properties = zoned(plan, met, seed, checker)?;
     let contacts = contacts(plan, &graph, &placed, &properties, seed);
     let assembly = Assembly {
         grains: placed.grains,
@@ -115,23 +119,30 @@ fn warn_of_grains_behind(
     }
 }
 
+/// Where grains meet.
+#[derive(Clone, Copy)]
+struct Met<'a> {
+    graph: &'a ContactGraph,
+    grains: &'a PerGrain<Grain>,
+}
+
 /// The property of each site.
 fn zoned(
     plan: &ContactsPlan,
-    graph: &ContactGraph,
+    met: Met<'_>,
     seed: u64,
     checker: &mut Checker,
 ) -> Option<Vec<PropertyId>> {
-    let mut properties: Vec<Option<PropertyId>> = vec![None; graph.sites.len()];
+    let mut properties: Vec<Option<PropertyId>> = vec![None; met.graph.sites.len()];
     if plan.zones.is_empty() && plan.properties.len() == 1 {
         properties.fill(Some(PropertyId(0)));
     }
     let mut seeds = stream(seed, Purpose::Zones);
     for zone in &plan.zones {
         let draws = zone_stream(&mut seeds);
-        let chosen = chosen(zone, graph, draws);
+        let chosen = chosen(zone, met, draws);
         if !chosen.contains(&true) {
-            empty_zone(zone, plan, graph, checker);
+            empty_zone(zone, plan, met, checker);
         }
         for (property, chosen) in properties.iter_mut().zip(chosen) {
             if chosen {
@@ -139,14 +150,14 @@ fn zoned(
             }
         }
     }
-    for (property, site) in properties.iter_mut().zip(&graph.sites) {
+    for (property, site) in properties.iter_mut().zip(&met.graph.sites) {
         if let Partner::Side(side) = site.second {
             *property = plan.sides[side].as_ref().map(|side| side.property);
         }
     }
     let without = properties.iter().position(Option::is_none);
     if let Some(first) = without {
-        without_property(plan, graph, first, &properties, checker);
+        without_property(plan, met, first, &properties, checker);
         return None;
     }
     properties.into_iter().collect()
@@ -158,9 +169,9 @@ fn zone_stream(seeds: &mut Stream) -> Stream {
     stream((seeds.unit() * SEEDS) as u64, Purpose::Zones)
 }
 
-fn chosen(zone: &ZonePlan, graph: &ContactGraph, mut draws: Stream) -> Vec<bool> {
+fn chosen(zone: &ZonePlan, met: Met<'_>, mut draws: Stream) -> Vec<bool> {
     let between_grains = |site: &Site| matches!(site.second, Partner::Grain(_));
-    graph
+    met.graph
         .sites
         .iter()
         .map(|site| {
@@ -169,7 +180,7 @@ fn chosen(zone: &ZonePlan, graph: &ContactGraph, mut draws: Stream) -> Vec<bool>
             between_grains(site)
                 && match zone.place {
                     ZonePlace::Everywhere => true,
-                    ZonePlace::Strip(ranges) => ranges.contain(site.tangent_point),
+                    ZonePlace::Strip(ranges) => ranges.contain(site.tangent_point(met.grains)),
                     ZonePlace::Share(share) => draw < share,
                 }
         })
@@ -177,8 +188,8 @@ fn chosen(zone: &ZonePlan, graph: &ContactGraph, mut draws: Stream) -> Vec<bool>
 }
 
 /// A zone for all contacts may find none between grains; one that chooses is a mistake then.
-fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, graph: &ContactGraph, checker: &mut Checker) {
-    let count = tangent_points(graph).count();
+fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, met: Met<'_>, checker: &mut Checker) {
+    let count = tangent_points(met).count();
     let expected = match zone.place {
         ZonePlace::Everywhere => {
             let name = &plan.properties[zone.property].property.name;
@@ -190,7 +201,7 @@ fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, graph: &ContactGraph, checke
         ZonePlace::Share(share) if count > 0 => {
             format!("a share of {share} of {count} contacts; expected a larger one")
         }
-        _ => where_contacts_lie(graph),
+        _ => where_contacts_lie(met),
     };
     checker.push(Problem::at(
         &zone.span,
@@ -200,17 +211,17 @@ fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, graph: &ContactGraph, checke
 }
 
 /// Contact points between grains.
-fn tangent_points(graph: &ContactGraph) -> impl Iterator<Item = Vector> {
+fn tangent_points(met: Met<'_>) -> impl Iterator<Item = Vector> {
     let between = |site: &&Site| matches!(site.second, Partner::Grain(_));
-    graph
+    met.graph
         .sites
         .iter()
         .filter(between)
-        .map(|site| site.tangent_point)
+        .map(move |site| site.tangent_point(met.grains))
 }
 
-fn where_contacts_lie(graph: &ContactGraph) -> String {
-    let points = || tangent_points(graph);
+fn where_contacts_lie(met: Met<'_>) -> String {
+    let points = || tangent_points(met);
     let span = |value: fn(Vector) -> f64| {
         points()
             .map(value)
@@ -233,14 +244,14 @@ fn where_contacts_lie(graph: &ContactGraph) -> String {
 
 fn without_property(
     plan: &ContactsPlan,
-    graph: &ContactGraph,
+    met: Met<'_>,
     first: usize,
     properties: &[Option<PropertyId>],
     checker: &mut Checker,
 ) {
     let count = properties.iter().filter(|p| p.is_none()).count();
-    let site = &graph.sites[first];
-    let point = site.tangent_point;
+    let site = &met.graph.sites[first];
+    let point = site.tangent_point(met.grains);
     let span = plan.zones.last().map_or(&plan.span, |zone| &zone.span);
     let verb = if count == 1 {
         "contact has"
