@@ -237,6 +237,22 @@ fn an_advancing_front_squeezed_evenly_has_an_even_stress() {
     assert!(xx < 0.0 && (xx - yy).abs() < 0.1 * xx.abs(), "{xx} {yy}");
 }
 
+/// Every neighbour is cemented, so each triangle is a void cell, and the squeezed pack knows no direction.
+#[test]
+fn a_pack_of_wanted_density_is_as_dense_and_squeezed_evenly() {
+    let run = done("target.toml");
+    let grains = run.table("grains", 0).expect("grains");
+    let radii = grains.numbers("radius").expect("radii");
+    let solid: f64 = radii.iter().map(|r| std::f64::consts::PI * r * r).sum();
+    // To half the largest grain.
+    assert!((solid - 0.82 * 900.0).abs() < 0.5 * std::f64::consts::PI * 2.25);
+    let (xx, yy) = (run.steps("stress_xx")[0], run.steps("stress_yy")[0]);
+    assert!(xx < 0.0 && (xx - yy).abs() < 0.1 * xx.abs(), "{xx} {yy}");
+    let voids = run.table("voids", 1).expect("voids");
+    let orders = voids.numbers("order").expect("orders");
+    assert!(orders.iter().all(|order| *order == 3.0));
+}
+
 #[test]
 fn a_hopper_carries_the_weight_of_its_grains() {
     let run = done("hopper.toml");

@@ -1,4 +1,5 @@
-//! Time to make and to measure assemblies of dropped grains, radii 0.5 to 1.5: `cargo bench -p kavics`.
+//! Time to make and to measure assemblies of dropped grains, radii 0.5 to 1.5: `cargo bench -p kavics`, or a part of it
+//! by name: `cargo bench -p kavics -- contact`. `RAYON_NUM_THREADS=1` keeps it to one thread.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -7,11 +8,11 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use kavics::assembly::{Between, contact_graph};
 use kavics::ids::PerSide;
-use kavics::measure::{Snapshot, Window, measures};
+use kavics::measure::{Snapshot, Window, geometric_measures, measures, void_cells};
 use kavics::packing::{Bed, Sizes, dropped};
 use kavics::scene::{Scene, read_text};
 
-const COUNTS: [usize; 2] = [10_000, 100_000];
+const COUNTS: [usize; 3] = [10_000, 100_000, 1_000_000];
 const SEED: u64 = 1;
 
 /// Width of a box whose height is about twice its width.
@@ -58,6 +59,7 @@ fn graph(criterion: &mut Criterion) {
     }
 }
 
+/// All measures, those that need no equilibrium, and the void cells, in the state before loading.
 fn all_measures(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("measures");
     for count in COUNTS {
@@ -67,15 +69,21 @@ fn all_measures(criterion: &mut Criterion) {
         let snapshot = Snapshot::new(&scene.assembly, &unloaded);
         let window = Window::new(scene.window.clone(), count);
         group.throughput(Throughput::Elements(count as u64));
-        group.bench_function(BenchmarkId::from_parameter(count), |bencher| {
+        group.bench_function(BenchmarkId::new("all", count), |bencher| {
             bencher.iter(|| measures(black_box(&snapshot), &window));
+        });
+        group.bench_function(BenchmarkId::new("without equilibrium", count), |bencher| {
+            bencher.iter(|| geometric_measures(black_box(&snapshot), &window));
+        });
+        group.bench_function(BenchmarkId::new("void cells", count), |bencher| {
+            bencher.iter(|| void_cells(black_box(&snapshot)));
         });
     }
 }
 
 fn short() -> Criterion {
     Criterion::default()
-        .sample_size(20)
+        .sample_size(10)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(3))
 }
