@@ -66,6 +66,7 @@ impl Run {
             "grains" => results.grains(step),
             "contacts" => results.contacts(step),
             "sides" => results.sides(step),
+            "voids" => results.voids(step),
             other => Columns::read(&results.path().join(format!("{other}.parquet"))),
         }
     }

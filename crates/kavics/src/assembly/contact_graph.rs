@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use crate::assembly::{Contact, Grain, Partner, Side};
+use crate::assembly::{Contact, Grain, Partner, Side, container};
 use crate::geometry::{
-    Container, Disc, DualEdge, Edges, Grid, HalfPlane, PowerDiagram, SideEdge, Vector,
-    power_diagram_of, spatial_order,
+    Disc, DualEdge, Edges, Grid, PowerDiagram, SideEdge, Vector, lowest_first, power_diagram_of,
+    spatial_order,
 };
 use crate::ids::{GrainId, Id, PerGrain, PerSide, PropertyId, SideId};
 
@@ -98,11 +98,7 @@ pub fn contact_graph(
     reach: &PerSide<f64>,
     touching_tolerance: f64,
 ) -> ContactGraph {
-    let planes = sides.values().iter().map(|side| HalfPlane {
-        point: side.start,
-        outward: side.outward,
-    });
-    let container = Container::new(&planes.collect::<Vec<_>>());
+    let container = container(sides);
     let unit = container.unit();
     let discs = grains.values();
     let mean_radius = discs.iter().map(|g| g.radius).sum::<f64>() / discs.len().max(1) as f64;
@@ -147,16 +143,8 @@ pub fn contact_graph(
 
 /// The triangles by the ids of their grains, lowest first.
 fn triangles(mut diagram: PowerDiagram, order: &[u32]) -> Vec<[GrainId; 3]> {
-    let own = |triangle: [u32; 3]| {
-        let [a, b, c] = triangle.map(|place| GrainId(order[place as usize]));
-        if a < b.min(c) {
-            [a, b, c]
-        } else if b < c {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        }
-    };
+    let own =
+        |triangle: [u32; 3]| lowest_first(triangle.map(|place| order[place as usize])).map(GrainId);
     diagram.triangles.append(&mut diagram.outer_triangles);
     diagram.triangles.into_iter().map(own).collect()
 }

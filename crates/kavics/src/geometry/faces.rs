@@ -64,7 +64,7 @@ pub(super) fn fingerprint([a, b, c]: [u32; 3]) -> u64 {
 }
 
 /// A triangle with its lowest number first, turning as before.
-pub(super) fn lowest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
+pub fn lowest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

@@ -14,6 +14,7 @@ mod vector;
 
 pub use container::{Container, HalfPlane};
 pub use embedding::{Embedding, HalfEdge};
+pub use faces::lowest_first;
 pub use near_pairs::{Disc, Grid, NearPair, spatial_order};
 pub use polygon::Polygon;
 pub use power_diagram::{DualEdge, Edges, PowerDiagram, SideEdge, power_diagram, power_diagram_of};

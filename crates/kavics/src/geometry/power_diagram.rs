@@ -125,14 +125,23 @@ pub fn power_diagram_of(
     };
     let mut cut = clipping.open_cells(&mut faces, &graph);
     clipping.add_outer_triangles(&mut cut, &graph);
+    let mut of_faces = std::mem::take(&mut faces.triangles);
+    let (near_edges, triangles) = rayon::join(
+        || near_edges(near, &faces, &cut, &graph, &grid.discs),
+        || {
+            of_faces.retain(|triangle| !faces.cells[triangle[0] as usize].open);
+            of_faces
+        },
+    );
     let mut diagram = PowerDiagram {
-        near_edges: near_edges(near, &faces, &cut, &graph, &grid.discs),
+        near_edges,
+        triangles,
         ..PowerDiagram::default()
     };
     if edges == Edges::All {
         diagram.edges = all_edges(&diagram.near_edges, &mut faces, &mut cut);
     }
-    diagram.add_cells(faces, cut);
+    diagram.add_cells(&faces, cut);
     diagram
 }
 
@@ -237,18 +246,14 @@ fn not_turned_around([before, after]: [f64; 2]) -> [f64; 2] {
 }
 
 impl PowerDiagram {
-    /// Adds cells and triangles; the disc with the lowest number says what triangles there are.
-    fn add_cells(&mut self, mut faces: Faces, mut cut: CutOut) {
+    /// Adds the cells, and what those that were cut out know besides.
+    fn add_cells(&mut self, faces: &Faces, mut cut: CutOut) {
         self.cell_area = faces.cells.iter().map(|cell| cell.area).collect();
         for (disc, area) in cut.discs.iter().zip(&cut.areas) {
             self.cell_area[*disc as usize] = *area;
         }
-        let cells = &faces.cells;
-        faces
-            .triangles
-            .retain(|triangle| !cells[triangle[0] as usize].open);
-        faces.triangles.append(&mut cut.diagram.triangles);
-        self.triangles = faces.triangles;
+        // The disc with the lowest number says what triangles there are.
+        self.triangles.append(&mut cut.diagram.triangles);
         self.outer_triangles = cut.diagram.outer_triangles;
         self.side_edges = cut.diagram.side_edges;
     }
