@@ -323,8 +323,7 @@ proptest! {
                 }
             }
         }
-        let mut found: Vec<_> = found.iter().map(|p| (p.first, p.second)).collect();
-        found.sort_unstable();
+        let found: Vec<_> = found.iter().map(|p| (p.first, p.second)).collect();
         prop_assert_eq!(found, expected);
     }
 

@@ -116,7 +116,7 @@ pub fn contact_graph(
         Between::Touching => (touching_tolerance, Edges::OfNearPairs),
         Between::Neighbours => (touching_tolerance.max(LIKELY * mean_radius), Edges::All),
     };
-    let near = grid.near_pairs(scale * near);
+    let near = grid.near_pairs_by_cells(scale * near);
     let mut diagram = power_diagram_of(&grid, &container.scaled(scale), &near, edges);
     let choice = Choice {
         grains,

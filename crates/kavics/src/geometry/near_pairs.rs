@@ -166,9 +166,15 @@ impl Grid {
         Self { discs, levels }
     }
 
-    /// All pairs whose gap is at most `reach`, level by level in the order of their cells; O(N) for discs that hardly
-    /// overlap.
+    /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap, and the sort.
     pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
+        let mut pairs = self.near_pairs_by_cells(reach);
+        pairs.par_sort_unstable_by_key(|pair| (pair.first, pair.second));
+        pairs
+    }
+
+    /// The same pairs level by level in the order of their cells.
+    pub fn near_pairs_by_cells(&self, reach: f64) -> Vec<NearPair> {
         let tasks: Vec<(usize, Range<usize>)> = self.tasks().collect();
         let of_task = |(level, rows): (usize, Range<usize>)| {
             let discs = self.levels[level].of_rows(&rows);
@@ -325,9 +331,7 @@ mod tests {
         let centres: Vec<_> = discs.iter().map(|d| Vector::new(d.0, d.1)).collect();
         let radii: Vec<_> = discs.iter().map(|d| d.2).collect();
         let pairs = Grid::new(&centres, &radii).near_pairs(reach);
-        let mut pairs: Vec<_> = pairs.iter().map(|p| (p.first, p.second)).collect();
-        pairs.sort_unstable();
-        pairs
+        pairs.iter().map(|p| (p.first, p.second)).collect()
     }
 
     #[test]

@@ -63,20 +63,14 @@ impl<'a> Walk<'a> {
         }
         let mut places: Vec<_> = (0..).zip(&gaps).map(|(k, gap)| (gap.at, k)).collect();
         places.sort_unstable();
-        let all = gap == sorted[0] && gaps.windows(2).all(|pair| pair[0] != pair[1]);
-        let walk = Self {
+        let mut met = gaps.clone();
+        met.sort_unstable();
+        (met == sorted).then_some(Self {
             gaps,
             places,
             discs,
             lifted,
-        };
-        (all && walk.meets_all(sorted)).then_some(walk)
-    }
-
-    fn meets_all(&self, sorted: &[Gap]) -> bool {
-        let mut met = self.gaps.clone();
-        met.sort_unstable();
-        met == sorted
+        })
     }
 
     /// The discs on the hull of the centres, counter-clockwise, those on its edges included (Andrew 1979).
