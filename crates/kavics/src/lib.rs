@@ -50,3 +50,4 @@ pub mod loading;
 pub mod measure;
 pub mod packing;
 pub mod scene;
+pub mod solver;

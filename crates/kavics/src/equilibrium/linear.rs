@@ -3,10 +3,10 @@
 use super::Iteration;
 use super::Load;
 use super::configuration::{Configuration, Progress};
-use super::direct::{GeneralSolver, Singular, SymmetricSolver};
 use super::sparsity::{Sparsity, Stored};
 use super::system::System;
 use crate::ids::{Id, PerBody};
+use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
 
 /// From this many unknowns on, a factor is kept until the iteration drops it.
 const LARGE: usize = 10_000;
@@ -64,7 +64,7 @@ impl System<'_> {
         progress: &mut Progress,
     ) -> Result<(), Singular> {
         if self.symmetric.is_none() {
-            self.symmetric = Some(SymmetricSolver::new(&self.lower)?);
+            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern)?);
         }
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
@@ -73,7 +73,7 @@ impl System<'_> {
                 let solver = self.symmetric.as_mut().ok_or(Singular)?;
                 // A factorisation that fails leaves no factor behind.
                 self.factored = None;
-                let held = solver.factorise(&self.lower, &values)?;
+                let held = solver.factorise(&self.lower.pattern, &values)?;
                 self.factored = Some((values, held));
             }
         }
@@ -96,11 +96,11 @@ impl System<'_> {
             None => Sparsity::new(&self.numbers, &self.frames, Stored::Full),
         };
         if self.general.is_none() {
-            self.general = Some(GeneralSolver::new(&full)?);
+            self.general = Some(GeneralSolver::new(&full.pattern)?);
         }
         let values = self.values(configuration, Iteration::Tangent, proximal, &full);
         let solver = self.general.as_mut().ok_or(Singular)?;
-        let factorised = solver.factorise(&full, &values);
+        let factorised = solver.factorise(&full.pattern, &values);
         self.full = Some(full);
         factorised?;
         solver.solve(right);
@@ -115,7 +115,7 @@ impl System<'_> {
         proximal: f64,
         sparsity: &Sparsity,
     ) -> Vec<f64> {
-        let mut values = vec![0.0; sparsity.row.len()];
+        let mut values = vec![0.0; sparsity.pattern.row.len()];
         for (contact, (frame, bond)) in self
             .frames
             .iter()
@@ -136,7 +136,7 @@ impl System<'_> {
         let spring = proximal * closed_stiffness(configuration);
         for (body, numbers) in self.numbers.iter().enumerate() {
             for number in numbers.iter().flatten() {
-                let diagonal = sparsity.diagonal(*number as usize);
+                let diagonal = sparsity.pattern.diagonal(*number as usize);
                 if self.set_aside[body] {
                     values[diagonal] = 1.0;
                 } else if proximal > 0.0 {

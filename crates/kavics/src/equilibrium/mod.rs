@@ -5,7 +5,6 @@
 mod balance;
 pub(crate) mod bond;
 pub(crate) mod configuration;
-mod direct;
 mod error;
 mod kinematics;
 mod linear;

@@ -4,6 +4,7 @@
 //! broken contact leaves behind are zeros.
 
 use super::kinematics::{Block, Blocks, ContactFrame, FREEDOMS};
+use crate::solver::Pattern;
 
 /// Numbers of the unknowns of each body; none where a freedom is held or moved.
 pub type Numbers = [Option<u32>; FREEDOMS];
@@ -17,14 +18,12 @@ pub enum Stored {
     Full,
 }
 
-/// Compressed columns without values, and the places of the contacts in them.
+/// The pattern of the stiffness, and the places of the contacts in them.
 #[derive(Debug)]
 pub struct Sparsity {
     stored: Stored,
-    /// First entry of each column, and the number of entries at the end.
-    pub column_start: Vec<usize>,
-    /// Row of each entry.
-    pub row: Vec<usize>,
+    /// The entries.
+    pub pattern: Pattern,
     /// Per contact: entries above the second body's in a column of the first, and the other way round.
     places: Vec<[u32; 2]>,
     /// Per body: entries above its own in its columns.
@@ -35,22 +34,19 @@ impl Sparsity {
     /// The pattern of an assembly.
     pub fn new(numbers: &[Numbers], frames: &[ContactFrame], stored: Stored) -> Self {
         let neighbours = neighbours(numbers.len(), frames);
-        let mut pattern = Self {
+        let mut sparsity = Self {
             stored,
-            column_start: vec![0],
-            row: Vec::new(),
+            pattern: Pattern {
+                column_start: vec![0],
+                row: Vec::new(),
+            },
             places: vec![[0; 2]; frames.len()],
             own: vec![0; numbers.len()],
         };
         for (body, list) in neighbours.iter().enumerate() {
-            pattern.add_body(body, list, numbers);
+            sparsity.add_body(body, list, numbers);
         }
-        pattern
-    }
-
-    /// Number of unknowns.
-    pub fn order(&self) -> usize {
-        self.column_start.len() - 1
+        sparsity
     }
 
     fn add_body(&mut self, body: usize, neighbours: &[Neighbour], numbers: &[Numbers]) {
@@ -89,10 +85,12 @@ impl Sparsity {
         }
         for rank in 0..own.len() {
             if self.stored == Stored::Lower {
-                self.row.extend(own[rank..].iter().map(|&n| n as usize));
+                self.pattern
+                    .row
+                    .extend(own[rank..].iter().map(|&n| n as usize));
             }
-            self.row.extend(&rows);
-            self.column_start.push(self.row.len());
+            self.pattern.row.extend(&rows);
+            self.pattern.column_start.push(self.pattern.row.len());
         }
     }
 
@@ -131,7 +129,7 @@ impl Sparsity {
 
     fn add_own(&self, values: &mut [f64], body: usize, numbers: &Numbers, block: &Block) {
         for (column_rank, (column, column_number)) in free(numbers).enumerate() {
-            let start = self.column_start[column_number];
+            let start = self.pattern.column_start[column_number];
             for (row_rank, (row, _)) in free(numbers).enumerate() {
                 match self.stored {
                     Stored::Full => {
@@ -161,24 +159,11 @@ impl Sparsity {
             } else {
                 0
             };
-            let start = self.column_start[column_number] + own + place as usize;
+            let start = self.pattern.column_start[column_number] + own + place as usize;
             for (row_rank, (row, _)) in free(rows).enumerate() {
                 values[start + row_rank] += block[row][column];
             }
         }
-    }
-
-    /// Place of the diagonal entry of a column.
-    pub fn diagonal(&self, column: usize) -> usize {
-        let rows = &self.row[self.column_start[column]..self.column_start[column + 1]];
-        let place = match self.stored {
-            Stored::Lower => 0,
-            Stored::Full => rows
-                .iter()
-                .position(|&row| row == column)
-                .expect("every diagonal entry is stored"),
-        };
-        self.column_start[column] + place
     }
 }
 

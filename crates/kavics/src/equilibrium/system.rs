@@ -2,7 +2,6 @@
 
 use super::bond::Bond;
 use super::configuration::Configuration;
-use super::direct::{GeneralSolver, SymmetricSolver};
 use super::kinematics::{ALL_FREEDOMS, ContactFrame};
 use super::pieces::Pieces;
 use super::sparsity::{Numbers, Sparsity, Stored};
@@ -10,6 +9,7 @@ use super::{Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
+use crate::solver::{GeneralSolver, SymmetricSolver};
 
 /// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
 pub struct System<'a> {
@@ -111,7 +111,7 @@ impl<'a> System<'a> {
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
-        self.lower.order()
+        self.lower.pattern.order()
     }
 
     /// Whether a freedom is held or moved.
