@@ -8,7 +8,6 @@ pub(crate) mod configuration;
 mod error;
 mod kinematics;
 mod linear;
-mod pieces;
 mod search;
 mod sparsity;
 pub(crate) mod system;

@@ -3,11 +3,11 @@
 use super::bond::Bond;
 use super::configuration::Configuration;
 use super::kinematics::{ALL_FREEDOMS, ContactFrame};
-use super::pieces::Pieces;
 use super::sparsity::{Numbers, Sparsity, Stored};
 use super::{Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
+use crate::geometry::Pieces;
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
 use crate::solver::{GeneralSolver, SymmetricSolver};
 
@@ -139,7 +139,8 @@ impl<'a> System<'a> {
             touched[frame.first.index()] = true;
             touched[frame.second.index()] = true;
         }
-        let pieces = Pieces::new(self.assembly.body_count(), active.into_iter());
+        let edges = active.iter().map(|frame| [frame.first.0, frame.second.0]);
+        let pieces = Pieces::new(self.assembly.body_count(), edges);
         let wanted = pieces.any(|body| {
             let load = loads.values()[body];
             let pushed = self.at_free_freedoms(BodyId::from_index(body), load) != Load::default();

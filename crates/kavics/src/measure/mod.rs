@@ -8,6 +8,7 @@
 
 mod angle;
 mod coordination;
+mod cracks;
 mod enclosure;
 mod fabric;
 mod face_walk;
@@ -23,6 +24,7 @@ mod window;
 mod work;
 
 pub use coordination::Coordination;
+pub use cracks::{Crack, cracks};
 pub use fabric::{
     branch_tensor, contact_tensor, fabric_length_tensor, fabric_of_normals, fabric_tensor,
 };
