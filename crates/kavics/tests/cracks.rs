@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
 use kavics::assembly::{Assembly, Partner};
+use kavics::contact_law::{ContactForce, Phase, RelativeDisplacement};
 use kavics::equilibrium::{ContactState, Displacement, Load, State};
 use kavics::geometry::Vector;
 use kavics::ids::{ContactId, Id, PerBody};
@@ -25,11 +26,11 @@ fn block(kind: &str) -> Assembly {
 /// The cracks when the contacts that `broken` names are broken.
 fn cracks_of(assembly: &Assembly, broken: impl Fn(ContactId) -> bool) -> Vec<Crack> {
     let state = |id| ContactState {
-        displacement: Default::default(),
-        force: Default::default(),
+        displacement: RelativeDisplacement::default(),
+        force: ContactForce::default(),
         property: None,
         broken: broken(id),
-        phase: Default::default(),
+        phase: Phase::default(),
     };
     let bodies = assembly.body_count();
     let state = State {

@@ -72,6 +72,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
         record_voids: false,
+        record_cracks: false,
         compare: None,
         warnings: vec!["0.73 of the top side carries no load: no grain is met there".to_owned()],
         text: "title = \"Block of discs, pressed from above\"\n".to_owned(),

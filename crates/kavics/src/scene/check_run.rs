@@ -25,6 +25,8 @@ pub struct RunPlan {
     pub record_every: usize,
     /// Whether void cells are recorded with them.
     pub record_voids: bool,
+    /// Whether cracks are recorded with them.
+    pub record_cracks: bool,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
 }
@@ -71,6 +73,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
         window: window?,
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
+        record_cracks: record.and_then(|record| record.cracks).unwrap_or(false),
         compare: compare?,
     })
 }

@@ -270,6 +270,8 @@ pub struct RecordFile {
     pub every: Option<Placed<i64>>,
     /// Whether the void cells of these load steps are recorded too; not when absent.
     pub voids: Option<bool>,
+    /// Whether the cracks of these load steps are recorded too; not when absent.
+    pub cracks: Option<bool>,
 }
 
 /// Table to set beside the run.
