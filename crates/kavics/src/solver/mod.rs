@@ -3,6 +3,7 @@
 //! In: the pattern of a matrix, its values, right-hand sides. Out: solutions, and what the factor tells of the matrix.
 
 mod general;
+pub mod ordering;
 mod pattern;
 mod symmetric;
 
