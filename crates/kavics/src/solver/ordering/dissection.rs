@@ -26,7 +26,7 @@ pub(super) fn nested_dissection(graph: &Graph, position: Vec<[f64; 2]>) -> Vec<u
 }
 
 fn dissect(part: &Part, out: &mut [u32]) {
-    if part.nodes() <= LEAF {
+    if part.nodes() <= std::env::var("LEAF").map_or(LEAF, |s| s.parse().unwrap()) {
         return order_leaf(part, out);
     }
     let Some(side) = best_cut(part) else {

@@ -1,9 +1,8 @@
-//! The smallest set of nodes that separates two sets of a graph, as a maximum flow.
+//! The fewest nodes that separate two sides of a graph, as a maximum flow.
 //!
-//! Menger: as many nodes as there are paths from one set to the other that share no node. The paths are found in phases of
-//! shortest ones: Dinic, E. A. (1970). Algorithm for solution of a problem of maximum flow in networks with power
-//! estimation. *Soviet Math. Dokl.* 11, 1277–1280; Even, S. & Tarjan, R. E. (1975). Network flow and testing graph
-//! connectivity. *SIAM J. Comput.* 4, 507–518.
+//! Menger: they are as many as there are paths from one side to the other that share no node. The paths are found depth
+//! first, in phases in each of which a node is visited once, as Pothen, A. & Fan, C.-J. (1990). Computing the block
+//! triangular form of a sparse matrix. *ACM Trans. Math. Softw.* 16, 303–324, do for matchings.
 
 use super::graph::{Graph, NONE};
 
@@ -16,18 +15,21 @@ pub(super) enum Side {
     Middle,
     /// On the second side.
     Second,
-    /// Not part of what is cut.
-    Outside,
 }
 
-/// Neighbour of a path's first node: the first side.
-const FROM_FIRST: u32 = NONE - 1;
-/// Neighbour of a path's last node: the second side.
-const TO_SECOND: u32 = NONE - 1;
-const UNREACHED: u32 = u32::MAX;
+/// The middle of a graph that is to be cut.
+pub(super) struct Middle {
+    /// Neighbours in the middle of each node; numbers rise from the first side to the second.
+    pub graph: Graph,
+    /// Whether a node is beside the first side, the second.
+    pub beside: Vec<[bool; 2]>,
+}
+
+/// What comes before a path's first node.
+const FIRST_SIDE: u32 = NONE - 1;
 
 /// Where a search stands: before or behind a node. Passing from before to behind takes the node.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 struct Stop(u32);
 
 impl Stop {
@@ -54,55 +56,40 @@ impl Stop {
 
 /// Paths from the first side to the second that share no node.
 pub(super) struct Flow<'a> {
-    graph: &'a Graph,
-    side: &'a [Side],
+    middle: &'a Middle,
     /// Node before each on its path.
     previous: Vec<u32>,
-    /// Node after each on its path.
+    /// Node after each on its path; `NONE` for the last.
     next: Vec<u32>,
-    /// Steps from the first side to each stop.
-    level: Vec<u32>,
-    /// First neighbour of each stop that the phase has not tried.
-    untried: Vec<u32>,
-    queue: Vec<Stop>,
-    /// Middle nodes beside the first side.
-    entries: Vec<u32>,
+    /// Phase in which each stop was last visited.
+    visited: Vec<u32>,
+    phase: u32,
+    /// Number of neighbours tried at the stops of the present search.
+    tried: Vec<u32>,
+    path: Vec<Stop>,
     paths: usize,
 }
 
 impl<'a> Flow<'a> {
-    /// No path yet.
-    pub(super) fn new(graph: &'a Graph, side: &'a [Side]) -> Self {
-        let nodes = graph.nodes();
-        let beside_first = |&node: &u32| {
-            side[node as usize] == Side::Middle
-                && graph
-                    .neighbours(node)
-                    .iter()
-                    .any(|&n| side[n as usize] == Side::First)
-        };
-        Self {
-            graph,
-            side,
+    /// As many paths as there are. None where they are more than `most`.
+    pub(super) fn new(middle: &'a Middle, most: usize) -> Option<Self> {
+        let nodes = middle.graph.nodes();
+        let mut flow = Self {
+            middle,
             previous: vec![NONE; nodes],
             next: vec![NONE; nodes],
-            level: vec![UNREACHED; 2 * nodes],
-            untried: vec![0; 2 * nodes],
-            queue: Vec::with_capacity(2 * nodes),
-            entries: (0..nodes as u32).filter(beside_first).collect(),
+            visited: vec![0; 2 * nodes],
+            phase: 0,
+            tried: Vec::new(),
+            path: Vec::new(),
             paths: 0,
-        }
-    }
-
-    /// Finds as many paths as there are. None where there are more than `most`.
-    pub(super) fn saturate(mut self, most: usize) -> Option<Self> {
-        while self.paths <= most {
-            if !self.measure_levels() {
-                return Some(self);
+        };
+        while flow.add_paths() {
+            if flow.paths > most {
+                return None;
             }
-            self.add_shortest_paths();
         }
-        None
+        Some(flow)
     }
 
     /// Number of paths, and so of nodes of a smallest separator.
@@ -110,215 +97,163 @@ impl<'a> Flow<'a> {
         self.paths
     }
 
-    /// Breadth first from the first side; whether the second is reached.
-    fn measure_levels(&mut self) -> bool {
-        self.level.fill(UNREACHED);
-        self.queue.clear();
-        for entry in 0..self.entries.len() {
-            self.reach(Stop::before(self.entries[entry]), 0);
-        }
-        let (mut read, mut found) = (0, false);
-        while read < self.queue.len() {
-            let stop = self.queue[read];
-            let level = self.level[stop.index()] + 1;
-            read += 1;
-            if stop.is_behind() {
-                for &neighbour in self.graph.neighbours(stop.node()) {
-                    match self.side[neighbour as usize] {
-                        Side::Middle => self.reach(Stop::before(neighbour), level),
-                        Side::Second => found = true,
-                        Side::First | Side::Outside => {}
-                    }
-                }
+    /// A phase: a search from every node beside the first side. Whether any found a path.
+    fn add_paths(&mut self) -> bool {
+        self.phase += 1;
+        let before = self.paths;
+        for node in 0..self.middle.graph.nodes() as u32 {
+            if self.middle.beside[node as usize][0] && self.search(node) {
+                self.take_path();
             }
-            if found {
+        }
+        self.paths > before
+    }
+
+    /// Depth first to the second side.
+    fn search(&mut self, entry: u32) -> bool {
+        self.path.clear();
+        self.tried.clear();
+        self.visit(Stop::before(entry));
+        while let Some(&stop) = self.path.last() {
+            if stop.is_behind() && self.middle.beside[stop.node() as usize][1] {
                 return true;
             }
-            if let Some(through) = self.through(stop) {
-                self.reach(through, level);
+            match self.further(stop) {
+                Some(next) => self.visit(next),
+                None => {
+                    self.path.pop();
+                    self.tried.pop();
+                }
             }
         }
         false
     }
 
-    fn reach(&mut self, stop: Stop, level: u32) {
-        let known = &mut self.level[stop.index()];
-        if *known == UNREACHED {
-            *known = level;
-            self.queue.push(stop);
+    fn visit(&mut self, stop: Stop) {
+        let visited = &mut self.visited[stop.index()];
+        if *visited != self.phase {
+            *visited = self.phase;
+            self.path.push(stop);
+            self.tried.push(0);
         }
+    }
+
+    /// The next stop that a search can go to from its last and has not been at.
+    fn further(&mut self, stop: Stop) -> Option<Stop> {
+        let is_new = |next: &Stop| self.visited[next.index()] != self.phase;
+        let neighbours = if stop.is_behind() {
+            self.middle.graph.neighbours(stop.node())
+        } else {
+            &[]
+        };
+        let tried = self.tried.last_mut()?;
+        while let Some(&neighbour) =
+            neighbours.get(neighbours.len().wrapping_sub(1 + *tried as usize))
+        {
+            *tried += 1;
+            if is_new(&Stop::before(neighbour)) {
+                return Some(Stop::before(neighbour));
+            }
+        }
+        self.through(stop).filter(is_new)
     }
 
     /// Where a stop leads other than to its node's neighbours: through the node, or back along the path that takes it.
     fn through(&self, stop: Stop) -> Option<Stop> {
         let node = stop.node();
-        let previous = self.previous[node as usize];
-        match (stop.is_behind(), previous) {
+        match (stop.is_behind(), self.previous[node as usize]) {
             (false, NONE) => Some(Stop::behind(node)),
-            (true, NONE) | (false, FROM_FIRST) => None,
+            (true, NONE) | (false, FIRST_SIDE) => None,
             (true, _) => Some(Stop::before(node)),
             (false, previous) => Some(Stop::behind(previous)),
         }
     }
 
-    /// Adds shortest paths, one after the other, until every further one would be longer.
-    fn add_shortest_paths(&mut self) {
-        self.untried.fill(0);
-        let mut path = Vec::new();
-        for entry in 0..self.entries.len() {
-            let node = self.entries[entry];
-            let start = Stop::before(node);
-            if self.previous[node as usize] == FROM_FIRST || self.level[start.index()] != 0 {
-                continue;
-            }
-            path.clear();
-            path.push(start);
-            if self.search(&mut path) {
-                self.take(&path);
-            }
-        }
-    }
-
-    /// Depth first along rising levels to the second side. A stop that was left is not entered again in the phase.
-    fn search(&mut self, path: &mut Vec<Stop>) -> bool {
-        while let Some(&stop) = path.last() {
-            let level = self.level[stop.index()];
-            let neighbours = if stop.is_behind() {
-                self.graph.neighbours(stop.node())
-            } else {
-                &[]
-            };
-            let untried = &mut self.untried[stop.index()];
-            let mut further = None;
-            while (*untried as usize) < neighbours.len() && further.is_none() {
-                let neighbour = neighbours[*untried as usize];
-                *untried += 1;
-                match self.side[neighbour as usize] {
-                    Side::Second => return true,
-                    Side::Middle => further = Some(Stop::before(neighbour)),
-                    Side::First | Side::Outside => {}
-                }
-                further = further.filter(|next| self.level[next.index()] == level + 1);
-            }
-            if further.is_none() && self.untried[stop.index()] as usize == neighbours.len() {
-                self.untried[stop.index()] += 1;
-                further = self
-                    .through(stop)
-                    .filter(|next| self.level[next.index()] == level + 1);
-            }
-            match further {
-                Some(next) => {
-                    path.push(next);
-                }
-                None => {
-                    self.level[stop.index()] = UNREACHED;
-                    path.pop();
-                }
-            }
-        }
-        false
-    }
-
-    /// Makes the path part of the flow; what it goes back along leaves the flow.
-    fn take(&mut self, path: &[Stop]) {
-        for step in path.windows(2) {
+    /// Makes the search's path part of the flow; what it goes back along leaves the flow.
+    fn take_path(&mut self) {
+        for step in self.path.windows(2) {
             let (from, to) = (step[0], step[1]);
             if !from.is_behind() && to.node() != from.node() {
                 self.previous[from.node() as usize] = NONE;
                 self.next[to.node() as usize] = NONE;
             }
         }
-        self.previous[path[0].node() as usize] = FROM_FIRST;
-        for step in path.windows(2) {
+        self.previous[self.path[0].node() as usize] = FIRST_SIDE;
+        for step in self.path.windows(2) {
             let (from, to) = (step[0], step[1]);
             if from.is_behind() && to.node() != from.node() {
                 self.next[from.node() as usize] = to.node();
                 self.previous[to.node() as usize] = from.node();
             }
         }
-        if let Some(last) = path.last() {
-            self.next[last.node() as usize] = TO_SECOND;
-        }
-        for stop in path {
-            self.level[stop.index()] = UNREACHED;
-        }
         self.paths += 1;
     }
 
-    /// The smallest separator next to the first side: sides of all nodes, the separator being what stays in the middle.
+    /// The smallest separator next to the first side: the side of every node, the separator being what stays in the
+    /// middle.
     pub(super) fn cut_near_first(&self) -> Vec<Side> {
-        self.sides(|node| {
-            let before = self.level[Stop::before(node).index()] != UNREACHED;
-            let behind = self.level[Stop::behind(node).index()] != UNREACHED;
-            match (before, behind) {
-                (_, true) => Side::First,
-                (true, false) => Side::Middle,
-                (false, false) => Side::Second,
-            }
-        })
+        // The last phase has found no path and so visited all that the first side leads to.
+        let reached = |stop: Stop| self.visited[stop.index()] == self.phase;
+        let nodes = 0..self.middle.graph.nodes() as u32;
+        nodes
+            .map(
+                |node| match (reached(Stop::before(node)), reached(Stop::behind(node))) {
+                    (_, true) => Side::First,
+                    (true, false) => Side::Middle,
+                    (false, false) => Side::Second,
+                },
+            )
+            .collect()
     }
 
     /// The smallest separator next to the second side.
-    pub(super) fn cut_near_second(&mut self) -> Vec<Side> {
-        self.measure_reverse();
-        self.sides(|node| {
-            let before = self.level[Stop::before(node).index()] != UNREACHED;
-            let behind = self.level[Stop::behind(node).index()] != UNREACHED;
-            match (before, behind) {
-                (true, _) => Side::Second,
-                (false, true) => Side::Middle,
-                (false, false) => Side::First,
-            }
-        })
-    }
-
-    fn sides(&self, of_middle: impl Fn(u32) -> Side) -> Vec<Side> {
-        let nodes = 0..self.graph.nodes() as u32;
+    pub(super) fn cut_near_second(&self) -> Vec<Side> {
+        let leads = self.leads_to_second();
+        let nodes = 0..self.middle.graph.nodes() as u32;
         nodes
-            .map(|node| match self.side[node as usize] {
-                Side::Middle => of_middle(node),
-                outer => outer,
+            .map(|node| {
+                match (
+                    leads[Stop::before(node).index()],
+                    leads[Stop::behind(node).index()],
+                ) {
+                    (true, _) => Side::Second,
+                    (false, true) => Side::Middle,
+                    (false, false) => Side::First,
+                }
             })
             .collect()
     }
 
-    /// Marks what leads to the second side.
-    fn measure_reverse(&mut self) {
-        self.level.fill(UNREACHED);
-        self.queue.clear();
-        for node in 0..self.graph.nodes() as u32 {
-            let beside_second = self.side[node as usize] == Side::Middle
-                && self
-                    .graph
-                    .neighbours(node)
-                    .iter()
-                    .any(|&n| self.side[n as usize] == Side::Second);
-            if beside_second {
-                self.reach(Stop::behind(node), 0);
+    /// Which stops lead to the second side.
+    fn leads_to_second(&self) -> Vec<bool> {
+        let mut leads = vec![false; self.visited.len()];
+        let mut open = Vec::new();
+        let mut mark = |stop: Stop, open: &mut Vec<Stop>| {
+            if !std::mem::replace(&mut leads[stop.index()], true) {
+                open.push(stop);
+            }
+        };
+        for node in 0..self.middle.graph.nodes() as u32 {
+            if self.middle.beside[node as usize][1] {
+                mark(Stop::behind(node), &mut open);
             }
         }
-        let mut read = 0;
-        while read < self.queue.len() {
-            let stop = self.queue[read];
-            read += 1;
+        while let Some(stop) = open.pop() {
             let node = stop.node();
-            let (previous, next) = (self.previous[node as usize], self.next[node as usize]);
-            if stop.is_behind() {
-                match next {
-                    NONE => self.reach(Stop::before(node), 0),
-                    TO_SECOND => {}
-                    next => self.reach(Stop::before(next), 0),
+            let is_free = self.previous[node as usize] == NONE;
+            if !stop.is_behind() {
+                for &neighbour in self.middle.graph.neighbours(node) {
+                    mark(Stop::behind(neighbour), &mut open);
                 }
-            } else {
-                for &neighbour in self.graph.neighbours(node) {
-                    if self.side[neighbour as usize] == Side::Middle {
-                        self.reach(Stop::behind(neighbour), 0);
-                    }
+                if !is_free {
+                    mark(Stop::behind(node), &mut open);
                 }
-                if previous != NONE {
-                    self.reach(Stop::behind(node), 0);
-                }
+            } else if is_free {
+                mark(Stop::before(node), &mut open);
+            } else if self.next[node as usize] != NONE {
+                mark(Stop::before(self.next[node as usize]), &mut open);
             }
         }
+        leads
     }
 }

@@ -76,14 +76,15 @@ impl Graph {
         self.places(node).len()
     }
 
-    fn places(&self, node: u32) -> Range<usize> {
+    pub(super) fn places(&self, node: u32) -> Range<usize> {
         let node = node as usize;
         self.start[node] as usize..self.start[node + 1] as usize
     }
 
     /// The graph of the listed nodes, numbered in their order.
     pub(super) fn induced(&self, nodes: &[u32]) -> Self {
-        let mut number = vec![NONE; self.nodes()];
+        let most = self.neighbour.iter().max().map_or(0, |&n| n as usize + 1);
+        let mut number = vec![NONE; self.nodes().max(most)];
         for (new, &node) in nodes.iter().enumerate() {
             number[node as usize] = new as u32;
         }
