@@ -5,11 +5,14 @@ use super::graph::{Graph, NONE};
 use super::part::Part;
 
 /// Rows of nodes in the middle of a cut.
-const ROWS: f64 = 12.0;
+const ROWS: f64 = 20.0;
 /// Largest share of the nodes that is in the middle of a cut.
 const MIDDLE: f64 = 0.4;
+/// Price of a side of one node against that of a separator of one: where the separators of halves shrink with the square
+/// root of the nodes, all of them below cost 1/(1 - 1/√2) times the first.
+const SIDES: f64 = 3.414;
 /// Directions that cuts are tried across.
-const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
+const DIRECTIONS: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// Sides of a good cut of a part; what is in the middle separates them. None where every cut is poor.
 ///
@@ -18,9 +21,10 @@ const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.
 /// LNCS 9125, 286–297. Here nodes are cut, not edges.
 pub(super) fn best_cut(part: &Part) -> Option<Vec<Side>> {
     let mut best: Option<(f64, Vec<Side>)> = None;
-    let mut most = part.nodes() / 4;
-    let nd: usize = std::env::var("ND").map_or(4, |s| s.parse().unwrap());
-    for direction in DIRECTIONS.into_iter().take(nd) {
+    // Any planar graph has a separator of 2√2·√n nodes: Lipton, R. J. & Tarjan, R. E. (1979). A separator theorem for
+    // planar graphs. *SIAM J. Appl. Math.* 36, 177–189.
+    let mut most = (8.0 * part.nodes() as f64).sqrt() as usize;
+    for direction in DIRECTIONS {
         let band = Band::new(part, direction);
         let middle = band.middle(part);
         let Some(flow) = Flow::new(&middle, most) else {
@@ -55,8 +59,7 @@ impl Band {
             .collect();
         let before = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let nodes = part.nodes() as f64;
-        let rows: f64 = std::env::var("ROWS").map_or(ROWS, |s| s.parse().unwrap());
-        let middle = (rows * nodes.sqrt()).min(MIDDLE * nodes);
+        let middle = (ROWS * nodes.sqrt()).min(MIDDLE * nodes);
         let outer = ((part.nodes() - middle as usize) / 2).max(1);
         let inner_end = part.nodes() - outer;
         ranked.select_nth_unstable_by(outer, before);
@@ -123,6 +126,6 @@ impl Band {
         let count = |wanted: Side| of_middle.iter().filter(|&&side| side == wanted).count();
         let separator = count(Side::Middle) as f64;
         let sides = [Side::First, Side::Second].map(|side| (self.outer + count(side)) as f64);
-        separator * separator * separator + std::env::var("PRICE").map_or(3.4, |s| s.parse().unwrap()) * sides.map(|n| n * n.sqrt()).iter().sum::<f64>()
+        separator * separator * separator + SIDES * sides.map(|n| n * n.sqrt()).iter().sum::<f64>()
     }
 }

@@ -6,6 +6,7 @@
 use super::cut::best_cut;
 use super::graph::Graph;
 use super::leaf::order_leaf;
+use super::minimum_degree::minimum_degree;
 use super::part::Part;
 
 /// A part of no more nodes is not cut further.
@@ -26,11 +27,14 @@ pub(super) fn nested_dissection(graph: &Graph, position: Vec<[f64; 2]>) -> Vec<u
 }
 
 fn dissect(part: &Part, out: &mut [u32]) {
-    if part.nodes() <= std::env::var("LEAF").map_or(LEAF, |s| s.parse().unwrap()) {
+    if part.nodes() <= LEAF {
         return order_leaf(part, out);
     }
     let Some(side) = best_cut(part) else {
-        return order_leaf(part, out);
+        for (place, node) in out.iter_mut().zip(minimum_degree(&part.inner_graph())) {
+            *place = part.original[node as usize];
+        }
+        return;
     };
     let ([first, second], separator) = part.divided(&side);
     let (sides, last) = out.split_at_mut(part.nodes() - separator.len());

@@ -15,11 +15,16 @@ pub(super) fn minimum_degree(graph: &Graph) -> Vec<u32> {
     if graph.neighbour.is_empty() {
         return (0..nodes as u32).collect();
     }
-    let pattern =
-        SymbolicSparseColMatRef::new_checked(nodes, nodes, &graph.start, None, &graph.neighbour);
-    let scratch = amd::order_scratch::<u32>(nodes, graph.neighbour.len());
+    let pattern = SymbolicSparseColMatRef::new_unsorted_checked(
+        nodes,
+        nodes,
+        &graph.start,
+        None,
+        &graph.neighbour,
+    );
+    let scratch = amd::order_maybe_unsorted_scratch::<u32>(nodes, graph.neighbour.len());
     let (mut order, mut place) = (vec![0; nodes], vec![0; nodes]);
-    let ordered = amd::order(
+    let ordered = amd::order_maybe_unsorted(
         &mut order,
         &mut place,
         pattern,

@@ -19,6 +19,12 @@ impl Part {
         self.graph.nodes()
     }
 
+    /// The graph of its nodes alone.
+    pub(super) fn inner_graph(&self) -> Graph {
+        let nodes: Vec<u32> = (0..self.nodes() as u32).collect();
+        self.graph.induced(&nodes)
+    }
+
     /// The part of the given nodes, in their order; `number` maps the nodes of this part and those around to `NONE`.
     pub(super) fn of(&self, nodes: &[u32], number: &mut [u32]) -> Self {
         for (new, &node) in nodes.iter().enumerate() {
