@@ -6,7 +6,7 @@ use super::configuration::{Configuration, Progress};
 use super::sparsity::{Sparsity, Stored};
 use super::system::System;
 use crate::ids::{Id, PerBody};
-use crate::solver::{GeneralSolver, Singular, SymmetricSolver, minimum_degree};
+use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
 
 /// From this many unknowns on, a factor is kept until the iteration drops it.
 const LARGE: usize = 10_000;
@@ -64,7 +64,7 @@ impl System<'_> {
         progress: &mut Progress,
     ) -> Result<(), Singular> {
         if self.symmetric.is_none() {
-            let order = minimum_degree(&self.lower.pattern)?;
+            let order = self.order_of_elimination();
             self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern, &order)?);
         }
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;

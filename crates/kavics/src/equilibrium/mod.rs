@@ -5,6 +5,7 @@
 mod balance;
 pub(crate) mod bond;
 pub(crate) mod configuration;
+mod elimination;
 mod error;
 mod kinematics;
 mod linear;

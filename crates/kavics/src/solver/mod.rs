@@ -6,6 +6,7 @@ mod analysis;
 mod downdate;
 mod general;
 mod inertia;
+pub mod ordering;
 mod panels;
 mod pattern;
 mod sweeps;
