@@ -245,6 +245,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
         load_factor: factor,
         complete: true,
         iterations: if step == 0 { 0 } else { 4 + step },
+        work_iterations: 0,
         residual: 3.1e-12 * factor,
         cuts: 0,
         state: State {

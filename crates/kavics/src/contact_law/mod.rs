@@ -202,6 +202,28 @@ pub struct ContactMemory {
     pub rotation_origin: f64,
 }
 
+/// A contact at an instant: where it stands, what it carries and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactInstant {
+    /// Relative displacement.
+    pub displacement: RelativeDisplacement,
+    /// Force.
+    pub force: ContactForce,
+    /// How it carries.
+    pub phase: Phase,
+}
+
+impl ContactMemory {
+    /// The remembered equilibrium.
+    pub fn instant(&self) -> ContactInstant {
+        ContactInstant {
+            displacement: self.displacement,
+            force: self.force,
+            phase: self.phase,
+        }
+    }
+}
+
 /// A square matrix over the components normal, shear, rotation.
 pub type Matrix = [[f64; 3]; 3];
 
@@ -350,6 +372,14 @@ impl Law {
             + shear::energy(force.shear, k.shear_at(v.normal))
     }
 
+    /// Whether the force is linear in the displacement, whatever the state: constant stiffness.
+    pub fn is_linear(&self, k: &Stiffness) -> bool {
+        match self {
+            Self::Cemented(_) => k.hardening == 0.0,
+            Self::Cohesionless(_) => false,
+        }
+    }
+
     /// Energy that went elsewhere on the straight way from the remembered equilibrium to `v`.
     pub fn dissipation(
         &self,
@@ -359,12 +389,27 @@ impl Law {
         memory: &ContactMemory,
         phase: Phase,
     ) -> Dissipation {
+        let now = ContactInstant {
+            displacement: v,
+            force,
+            phase,
+        };
+        self.dissipation_between([&memory.instant(), &now], k, memory)
+    }
+
+    /// Energy that went elsewhere on the straight way between two instants that share a memory.
+    pub fn dissipation_between(
+        &self,
+        ends: [&ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Dissipation {
         match self {
             Self::Cemented(law) => Dissipation {
-                nonpotential: shear::dissipation(law.reading, v, force.shear, k, memory),
+                nonpotential: shear::dissipation(law.reading, ends, k, memory),
                 friction: 0.0,
             },
-            Self::Cohesionless(law) => law.dissipation(v, force, k, memory, phase),
+            Self::Cohesionless(law) => law.dissipation(ends, k, memory),
         }
     }
 }

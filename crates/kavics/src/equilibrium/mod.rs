@@ -71,6 +71,8 @@ pub struct Settings {
     pub iteration: Iteration,
     /// Relative difference of utilisations below which contacts break together.
     pub tie_tolerance: f64,
+    /// Bound on the error of work and energies in a load step, relative to the work in it.
+    pub work_tolerance: f64,
     /// Whether the iterates are kept beside the equilibria.
     pub keep_iterates: bool,
 }
@@ -81,6 +83,7 @@ impl Default for Settings {
             tolerance: 1e-10,
             iteration: Iteration::Secant,
             tie_tolerance: 1e-9,
+            work_tolerance: 1e-6,
             keep_iterates: false,
         }
     }
@@ -174,7 +177,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// External work less all it went into: zero but for the straight lines between equilibria.
+    /// External work less all it went into: rounding where stiffness is constant, else within the tolerance of work.
     pub fn ledger_error(&self) -> f64 {
         self.external_work
             - self.elastic_energy
@@ -214,6 +217,11 @@ pub enum Warning {
         /// In how many contacts.
         contacts: usize,
     },
+    /// Work and energies are not known to the wanted tolerance.
+    WorkError {
+        /// Estimate of the error over the work of the load step.
+        relative: f64,
+    },
 }
 
 /// An equilibrium: the end of a load step, or the undeformed state as step 0.
@@ -227,8 +235,10 @@ pub struct Equilibrium {
     pub load_factor: f64,
     /// False: the last equilibrium of a load step that could not be finished.
     pub complete: bool,
-    /// Linear solves in this step.
+    /// Linear solves in this step, those for the work apart.
     pub iterations: usize,
+    /// Linear solves for the work between equilibria, where stiffness depends on the state.
+    pub work_iterations: usize,
     /// Largest unbalanced force over largest contact force.
     pub residual: f64,
     /// How often the step was halved.

@@ -216,6 +216,7 @@ impl<'a> LoadPath<'a> {
             }
             Err(failure) => {
                 way.progress.iterations = tried.progress.iterations;
+                way.account.iterations = tried.account.iterations;
                 Err(failure)
             }
         }
@@ -235,6 +236,7 @@ impl<'a> LoadPath<'a> {
             load_factor,
             complete,
             iterations: way.progress.iterations,
+            work_iterations: way.account.iterations,
             residual: self.point.residual,
             cuts,
             state: self.point.configuration.state(),

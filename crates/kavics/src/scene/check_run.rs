@@ -91,6 +91,14 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         number,
         Bound::NonNegative,
     );
+    let work = file.work_tolerance.as_ref();
+    let work = checker.number_or(
+        default.work_tolerance,
+        work,
+        "work_tolerance",
+        number,
+        Bound::Positive,
+    );
     let iteration = file
         .iteration
         .as_ref()
@@ -130,6 +138,7 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         tolerance: tolerance?,
         iteration: iteration?,
         tie_tolerance: ties?,
+        work_tolerance: work?,
         ..default
     };
     Some((settings, breakage?))

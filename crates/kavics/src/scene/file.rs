@@ -226,6 +226,8 @@ pub struct EquilibriumFile {
     pub breakage: Option<Placed<String>>,
     /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
     pub tie_tolerance: Option<Number>,
+    /// Bound on the error of work and energies in a load step, relative to its work; 1e-6 when absent.
+    pub work_tolerance: Option<Number>,
     /// "auto" (when absent) or "direct".
     pub solver: Option<Placed<String>>,
     /// "load".
