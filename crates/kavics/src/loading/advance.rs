@@ -320,6 +320,9 @@ fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failur
         .filter(|(count, _)| *count > 0)
         .map(|(_, warning)| warning)
         .collect();
+    let direct = system.breakdown;
+    way.warnings
+        .extend(direct.map(|breakdown| Warning::SolvedDirectly { breakdown }));
     Ok(())
 }
 
