@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use kavics::equilibrium::Warning;
+use kavics::equilibrium::{Breakdown, Warning};
 
 /// Warnings of the load steps, each once with all its load steps.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +45,13 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::ShearFloor { .. } => {
             format!("shear modulus at its floor in {}", count("contact"))
         }
+        Warning::SolvedDirectly { breakdown } => {
+            let why = match breakdown {
+                Breakdown::NotPositive => "the stiffness is not positive definite",
+                Breakdown::Stagnated => "the iteration gained no more",
+            };
+            format!("solved directly instead of by iteration, as {why}")
+        }
         Warning::SecondOrderWork { .. } => {
             format!("second-order work negative in {}", count("contact"))
         }
@@ -59,6 +66,7 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
 fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
+        Warning::SolvedDirectly { .. } => 1,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
         Warning::WorkError { .. } => 0,
     }

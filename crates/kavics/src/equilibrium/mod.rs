@@ -3,10 +3,12 @@
 //! In: an assembly, contact states, loads and prescribed displacements. Out: displacements and contact forces.
 
 mod balance;
+mod block_stiffness;
 pub(crate) mod bond;
 pub(crate) mod configuration;
 mod elimination;
 mod error;
+mod iterative;
 mod kinematics;
 mod linear;
 mod search;
@@ -62,6 +64,18 @@ pub enum Iteration {
     Tangent,
 }
 
+/// How linear systems are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SolverChoice {
+    /// By iteration where there are many unknowns, else directly.
+    #[default]
+    Auto,
+    /// By a factor: LDLᵀ, or LU where the tangent is not symmetric.
+    Direct,
+    /// By conjugate gradients with multigrid; by their stabilised biconjugate form where the tangent is not symmetric.
+    Iterative,
+}
+
 /// How equilibria are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -69,6 +83,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Which stiffness the iteration uses.
     pub iteration: Iteration,
+    /// How linear systems are solved.
+    pub solver: SolverChoice,
     /// Relative difference of utilisations below which contacts break together.
     pub tie_tolerance: f64,
     /// Bound on the error of work and energies in a load step, relative to the work in it.
@@ -82,6 +98,7 @@ impl Default for Settings {
         Self {
             tolerance: 1e-10,
             iteration: Iteration::Secant,
+            solver: SolverChoice::Auto,
             tie_tolerance: 1e-9,
             work_tolerance: 1e-6,
             keep_iterates: false,
@@ -199,6 +216,15 @@ pub struct Iterate {
     pub state: State,
 }
 
+/// Why linear systems are no more solved by iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breakdown {
+    /// The stiffness is not positive definite.
+    NotPositive,
+    /// The iteration gains no more.
+    Stagnated,
+}
+
 /// Something that makes a result less than it seems, though the run goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -211,6 +237,11 @@ pub enum Warning {
     ShearFloor {
         /// In how many contacts.
         contacts: usize,
+    },
+    /// The solver that iterates failed: systems are solved directly from here on.
+    SolvedDirectly {
+        /// Why.
+        breakdown: Breakdown,
     },
     /// Symmetric second-order work of a contact turned negative.
     SecondOrderWork {

@@ -352,6 +352,9 @@ fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failur
     if relative > system.settings.work_tolerance {
         way.warnings.push(Warning::WorkError { relative });
     }
+    let direct = system.breakdown;
+    way.warnings
+        .extend(direct.map(|breakdown| Warning::SolvedDirectly { breakdown }));
     Ok(())
 }
 

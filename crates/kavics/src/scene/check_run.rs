@@ -9,7 +9,7 @@ use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
 use super::named_file::named_file;
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity, ValueOr};
-use crate::equilibrium::{Iteration, Settings};
+use crate::equilibrium::{Iteration, Settings, SolverChoice};
 use crate::loading::Breakage;
 
 /// How a scene is solved, measured and recorded.
@@ -122,21 +122,27 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         checker.refuse(&word.span, &format!("`{key} = \"{}\"`", word.value));
         None
     };
-    let solvers = [("auto", true), ("direct", true), ("iterative", false)];
+    let solver = file.solver.as_ref().map_or(Some(default.solver), |word| {
+        let choices = [
+            ("auto", SolverChoice::Auto),
+            ("direct", SolverChoice::Direct),
+            ("iterative", SolverChoice::Iterative),
+        ];
+        checker.word(word, "solver", &choices)
+    });
     let controls = [
         ("load", true),
         ("displacement", false),
         ("dissipation", false),
         ("auto", false),
     ];
-    let solver = available(&file.solver, "solver", &solvers, checker);
     let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
-    solver?;
     control?;
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,
+        solver: solver?,
         tie_tolerance: ties?,
         work_tolerance: work?,
         ..default
