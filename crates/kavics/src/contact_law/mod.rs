@@ -281,6 +281,14 @@ impl Law {
         matches!(self, Self::Cohesionless(_))
     }
 
+    /// Whether the force is linear in the relative displacement.
+    pub fn is_linear(&self) -> bool {
+        match self {
+            Self::Cemented(law) => law.shear_hardening == 0.0,
+            Self::Cohesionless(_) => false,
+        }
+    }
+
     /// Force, secant and tangent at `v` while the contact carries as `phase` says.
     pub fn respond(
         &self,

@@ -108,7 +108,7 @@ impl System<'_> {
     }
 
     /// The stiffness of the assembly; 1 on the diagonal of what is set aside.
-    fn values(
+    pub(super) fn values(
         &self,
         configuration: &Configuration,
         iteration: Iteration,

@@ -5,6 +5,7 @@
 mod balance;
 pub(crate) mod bond;
 pub(crate) mod configuration;
+pub(crate) mod elastic;
 mod error;
 mod kinematics;
 mod linear;
@@ -95,6 +96,9 @@ pub struct Event {
     pub load_factor: f64,
     /// What it happened to, and what.
     pub kind: EventKind,
+    /// Number of the avalanche it belongs to, over the whole run; only with event-driven breakage: events between
+    /// two new maxima of the load factor.
+    pub avalanche: Option<usize>,
 }
 
 /// The kinds of events.

@@ -127,6 +127,7 @@ fn equilibrium(
             iteration,
             load_factor,
             kind,
+            avalanche: None,
         });
     way.events.extend(happened);
     for bond in configuration.bonds.values_mut() {
@@ -144,7 +145,7 @@ fn equilibrium(
 }
 
 /// What bound freedoms need so that nothing stays unbalanced.
-fn reactions(system: &System<'_>, unbalanced: &PerBody<Load>) -> PerBody<Load> {
+pub(super) fn reactions(system: &System<'_>, unbalanced: &PerBody<Load>) -> PerBody<Load> {
     unbalanced
         .ids()
         .map(|body| {
@@ -186,7 +187,7 @@ fn changes(contact: ContactId, old: Phase, new: Phase) -> [Option<EventKind>; 2]
     [first, slides.then_some(EventKind::Slid(contact))]
 }
 
-fn set_aside_events<'a>(
+pub(super) fn set_aside_events<'a>(
     before: &'a PerGrain<bool>,
     after: &'a PerGrain<bool>,
 ) -> impl Iterator<Item = EventKind> + 'a {
@@ -261,6 +262,7 @@ fn break_bonds(
             iteration: way.progress.iterations,
             load_factor,
             kind,
+            avalanche: None,
         });
     }
     let mut next = equilibrium(
@@ -288,7 +290,7 @@ fn break_bonds(
 }
 
 /// Refuses an equilibrium with a contact whose shear stiffness is lost; warns of what makes it less than it seems.
-fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failure> {
+pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failure> {
     let (mut on_floor, mut unstable) = (0, 0);
     for (contact, bond) in point.configuration.bonds.iter() {
         if !bond.is_active() || bond.stiffness.hardening == 0.0 {
@@ -372,6 +374,7 @@ pub fn first_events(point: &Point) -> Vec<Event> {
             iteration: 0,
             load_factor: 0.0,
             kind: EventKind::SetAside(grain),
+            avalanche: None,
         })
         .collect()
 }
