@@ -5,12 +5,15 @@
 
 use super::Displacement;
 use super::configuration::Configuration;
-use super::kinematics::{ALL_FREEDOMS, FREEDOMS};
+use super::kinematics::{ALL_FREEDOMS, Block, FREEDOMS};
 use super::system::System;
 use super::{Iteration, Load};
 use crate::contact_law::ContactForce;
 use crate::ids::{BodyId, ContactId, Id};
-use crate::solver::{Singular, SymmetricSolver};
+use crate::solver::Singular;
+
+/// Without a contact that leaves 1 − kC no larger than this the factor is better made anew.
+const HARDLY_HELD: f64 = 1e-6;
 
 /// Rows of a sparse right-hand side: number of the unknown, values.
 pub type Entries<const R: usize> = Vec<(usize, [f64; R])>;
@@ -21,16 +24,15 @@ impl System<'_> {
     /// # Errors
     /// Where there is no factor, not even with floppy modes held.
     pub fn factorise_bonds(&mut self, configuration: &Configuration) -> Result<usize, Singular> {
+        // The factor will be changed in place: no iteration may take it for that of its values.
+        self.factored = None;
         if self.unknowns() == 0 {
             return Ok(0);
         }
-        self.factored = None;
-        if self.symmetric.is_none() {
-            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern)?);
-        }
+        self.make_symmetric_solver()?;
         let values = self.values(configuration, Iteration::Secant, 0.0, &self.lower);
         let solver = self.symmetric.as_mut().ok_or(Singular)?;
-        solver.factorise(&self.lower.pattern, &values)
+        Ok(solver.factorise(&self.lower.pattern, &values)?.held)
     }
 
     /// Answers to two sets of loads, by unknown.
@@ -45,33 +47,19 @@ impl System<'_> {
                 }
             }
         }
-        self.solve_pair(&mut right);
+        if let Some(solver) = self.symmetric.as_mut() {
+            solver.solve_many(&mut right);
+        }
         right
     }
 
     /// Answers to what given forces of contacts do to their bodies.
     pub fn answer_entries(&mut self, entries: &Entries<2>) -> Vec<[f64; 2]> {
-        let mut right = vec![[0.0; 2]; self.unknowns()];
-        for (number, values) in entries {
-            for (sum, value) in right[*number].iter_mut().zip(values) {
-                *sum += value;
-            }
+        let mut answer = vec![[0.0; 2]; self.unknowns()];
+        if let Some(solver) = self.symmetric.as_mut() {
+            solver.solve_sparse(entries, &mut answer);
         }
-        self.solve_pair(&mut right);
-        right
-    }
-
-    fn solve_pair(&mut self, right: &mut [[f64; 2]]) {
-        let Some(solver) = self.symmetric.as_mut() else {
-            return;
-        };
-        for side in 0..2 {
-            let mut x: Vec<f64> = right.iter().map(|pair| pair[side]).collect();
-            solver.solve(&mut x);
-            for (pair, value) in right.iter_mut().zip(x) {
-                pair[side] = value;
-            }
-        }
+        answer
     }
 
     /// Bᵀ·Q of a contact at the unknowns: the loads that its bodies need to bear the forces `q`.
@@ -96,10 +84,16 @@ impl System<'_> {
         }
     }
 
-    /// Takes BᵀLLᵀB of a contact out of the factor, L given by its columns. False: the factor stays as it is, as
-    /// the rest would not hold, or the change cannot be made in place.
-    pub fn take_out(&mut self, _contact: ContactId, _columns: [ContactForce; FREEDOMS]) -> bool {
-        false
+    /// Takes BᵀLLᵀB of a contact out of the factor, L given by its columns. False, with the factor as it was or lost:
+    /// what is left would hardly hold, or the change cannot be made in place.
+    pub fn take_out(&mut self, contact: ContactId, columns: [ContactForce; FREEDOMS]) -> bool {
+        let mut entries = Entries::new();
+        self.entries(contact, columns, &mut entries);
+        let Some(solver) = self.symmetric.as_mut() else {
+            return entries.is_empty();
+        };
+        entries.is_empty()
+            || holds_without(solver.flexibility(&entries)) && solver.remove(&entries).is_ok()
     }
 
     /// Adds the answers to the displacements; nothing that is set aside moves.
@@ -117,5 +111,42 @@ impl System<'_> {
                 }
             }
         }
+    }
+}
+
+/// Whether an assembly holds well without a contact of which F = Lᵀ·C·L, C its flexibility in the assembly: whether the
+/// eigenvalues of F, those of k·C, stay below 1. At 1 what is left is a mechanism.
+fn holds_without(flexibility: Block) -> bool {
+    let mut rest = flexibility.map(|row| row.map(|value| -value));
+    for (place, row) in rest.iter_mut().enumerate() {
+        row[place] += 1.0;
+    }
+    for pivot in 0..FREEDOMS {
+        let own = rest[pivot];
+        // A value that is not a number must not pass.
+        if own[pivot].is_nan() || own[pivot] < HARDLY_HELD {
+            return false;
+        }
+        for row in &mut rest[pivot + 1..] {
+            let factor = row[pivot] / own[pivot];
+            for (value, above) in row.iter_mut().zip(own) {
+                *value -= factor * above;
+            }
+        }
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_eigenvalue_of_one_is_a_mechanism() {
+        // Eigenvalues 1, 0.5 and 0.2: ½·(1 ± ½) off the diagonal in the first two components.
+        let critical = [[0.75, 0.25, 0.0], [0.25, 0.75, 0.0], [0.0, 0.0, 0.2]];
+        let held = critical.map(|row| row.map(|value| 0.99 * value));
+        assert!(!holds_without(critical));
+        assert!(holds_without(held));
     }
 }

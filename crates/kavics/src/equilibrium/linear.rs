@@ -63,10 +63,7 @@ impl System<'_> {
         right: &mut [f64],
         progress: &mut Progress,
     ) -> Result<(), Singular> {
-        if self.symmetric.is_none() {
-            let order = minimum_degree(&self.lower.pattern)?;
-            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern, &order)?);
-        }
+        self.make_symmetric_solver()?;
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
             let values = self.values(configuration, iteration, proximal, &self.lower);
@@ -85,6 +82,15 @@ impl System<'_> {
         self.symmetric.as_mut().ok_or(Singular)?.solve(right);
         if proximal > 0.0 {
             self.factored = None;
+        }
+        Ok(())
+    }
+
+    /// The pattern analysed, once.
+    pub(super) fn make_symmetric_solver(&mut self) -> Result<(), Singular> {
+        if self.symmetric.is_none() {
+            let order = minimum_degree(&self.lower.pattern)?;
+            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern, &order)?);
         }
         Ok(())
     }

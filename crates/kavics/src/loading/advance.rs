@@ -218,7 +218,7 @@ fn over_limit(point: &Point, tie_tolerance: f64, breakage: Breakage) -> Vec<Brea
     }
     let ties = tie_tolerance.max(10.0 * point.residual);
     let bound = match breakage {
-        Breakage::WorstFirst => worst * (1.0 - ties),
+        Breakage::WorstFirst | Breakage::EventDriven => worst * (1.0 - ties),
         Breakage::Simultaneous => 1.0 - ties,
     };
     bonds

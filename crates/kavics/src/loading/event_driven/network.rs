@@ -62,6 +62,21 @@ impl Network {
                 pair[0] = configuration.displacements[BodyId::from_index(body)];
             }
         }
+        self.enter_moves();
+    }
+
+    /// What has just been set aside stays where it is at x, but for what is moved.
+    pub fn freeze(&mut self, system: &System<'_>, before: &[bool], x: f64) {
+        for (body, set_aside) in before.iter().enumerate() {
+            if system.set_aside[body] && !set_aside {
+                let here = self.displacement_at(body, x);
+                self.displacements[body] = [here, Displacement::default()];
+            }
+        }
+        self.enter_moves();
+    }
+
+    fn enter_moves(&mut self) {
         for (body, freedom, parts) in &self.acting.moved {
             let pair = &mut self.displacements[body.index()];
             for (u, part) in pair.iter_mut().zip(parts) {
@@ -107,12 +122,7 @@ impl Network {
     }
 
     /// Relative displacement of a contact at x.
-    pub fn relative_at(
-        &self,
-        system: &System<'_>,
-        contact: usize,
-        x: f64,
-    ) -> RelativeDisplacement {
+    pub fn relative_at(&self, system: &System<'_>, contact: usize, x: f64) -> RelativeDisplacement {
         relative_at(self.relative(system, contact), x)
     }
 
@@ -136,12 +146,7 @@ impl Network {
     }
 
     /// The largest utilisation at x, and the contacts that have it but for a relative tolerance.
-    pub fn worst(
-        &self,
-        system: &System<'_>,
-        x: f64,
-        ties: f64,
-    ) -> (f64, Vec<(ContactId, Mode)>) {
+    pub fn worst(&self, system: &System<'_>, x: f64, ties: f64) -> (f64, Vec<(ContactId, Mode)>) {
         let mut worst = 0.0;
         let mut near: Vec<(f64, ContactId, Mode)> = Vec::new();
         for (contact, spring) in self.springs.iter().enumerate() {
@@ -153,7 +158,28 @@ impl Network {
         }
         let bound = worst * (1.0 - ties);
         let tied = near.into_iter().filter(|near| near.0 >= bound);
-        (worst, tied.map(|(_, contact, mode)| (contact, mode)).collect())
+        (
+            worst,
+            tied.map(|(_, contact, mode)| (contact, mode)).collect(),
+        )
+    }
+
+    /// The contacts whose interval ends at `upper` just so, and the component that grows there.
+    pub fn at_end(
+        &self,
+        system: &System<'_>,
+        direction: f64,
+        upper: f64,
+    ) -> Vec<(ContactId, Mode)> {
+        let springs = self.springs.iter().enumerate();
+        springs
+            .filter_map(|(contact, spring)| {
+                let q = self.forces(system, contact);
+                let growth = force_at([ContactForce::default(), q[1]], direction);
+                (spring.interval(q, direction).upper == upper)
+                    .then(|| (ContactId::from_index(contact), spring.mode(growth)))
+            })
+            .collect()
     }
 
     /// What is unbalanced, and how much of it there is at factors up to ±`farthest`.
@@ -172,7 +198,8 @@ impl Network {
         }
         let mut largest: f64 = 0.0;
         for (body, parts) in unbalanced.iter().enumerate() {
-            let [constant, rate] = parts.map(|load| system.free_size(BodyId::from_index(body), load));
+            let [constant, rate] =
+                parts.map(|load| system.free_size(BodyId::from_index(body), load));
             let here = constant + farthest * rate;
             // A sum that is not a number must not pass for balance.
             if here > largest || here.is_nan() {
@@ -188,11 +215,8 @@ impl Network {
 
     /// Writes the state at x into a configuration.
     pub fn write(&self, system: &System<'_>, configuration: &mut Configuration, x: f64) {
-        for body in 0..self.displacements.len() {
-            if !system.set_aside[body] || system.anchored[body] {
-                let u = self.displacement_at(body, x);
-                configuration.displacements[BodyId::from_index(body)] = u;
-            }
+        for body in configuration.displacements.ids() {
+            configuration.displacements[body] = self.displacement_at(body.index(), x);
         }
         system.respond(configuration);
     }
