@@ -91,6 +91,8 @@ pub(crate) fn event_columns() -> Vec<Column<EventRow>> {
         Column::maybe_number("release_energy", work, |r: &EventRow| {
             r.energies().map(|e| e[1])
         }),
-        Column::maybe_integer("avalanche", |_: &EventRow| None),
+        Column::maybe_integer("avalanche", |r: &EventRow| {
+            r.event.avalanche.map(|number| number as i64)
+        }),
     ]
 }

@@ -238,6 +238,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
             fracture_energy: 0.012,
             release_energy: 0.034,
         },
+        avalanche: None,
     };
     Equilibrium {
         step,

@@ -303,6 +303,14 @@ impl Law {
         matches!(self, Self::Cohesionless(_))
     }
 
+    /// Whether the force is linear in the relative displacement.
+    pub fn is_linear(&self) -> bool {
+        match self {
+            Self::Cemented(law) => law.shear_hardening == 0.0,
+            Self::Cohesionless(_) => false,
+        }
+    }
+
     /// Force, secant and tangent at `v` while the contact carries as `phase` says.
     pub fn respond(
         &self,
@@ -370,14 +378,6 @@ impl Law {
         0.5 * k.normal * v.normal * v.normal
             + bending
             + shear::energy(force.shear, k.shear_at(v.normal))
-    }
-
-    /// Whether the force is linear in the displacement, whatever the state: constant stiffness.
-    pub fn is_linear(&self, k: &Stiffness) -> bool {
-        match self {
-            Self::Cemented(_) => k.hardening == 0.0,
-            Self::Cohesionless(_) => false,
-        }
     }
 
     /// Energy that went elsewhere on the straight way from the remembered equilibrium to `v`.

@@ -71,13 +71,17 @@ impl System<'_> {
         right: &mut [f64],
         progress: &mut Progress,
     ) -> Result<(), Singular> {
-        let lower = self.lower.take();
-        let lower =
-            lower.unwrap_or_else(|| Sparsity::new(&self.numbers, &self.frames, Stored::Lower));
+        let lower = self.take_lower();
         let solved =
             self.solve_by_factor(&lower, configuration, iteration, proximal, right, progress);
         self.lower = Some(lower);
         solved
+    }
+
+    /// The pattern of the lower triangle, to be given back.
+    pub(super) fn take_lower(&mut self) -> Sparsity {
+        let lower = self.lower.take();
+        lower.unwrap_or_else(|| Sparsity::new(&self.numbers, &self.frames, Stored::Lower))
     }
 
     fn solve_by_factor(
@@ -89,10 +93,7 @@ impl System<'_> {
         right: &mut [f64],
         progress: &mut Progress,
     ) -> Result<(), Singular> {
-        if self.symmetric.is_none() {
-            let order = self.order_of_elimination();
-            self.symmetric = Some(SymmetricSolver::new(&lower.pattern, &order)?);
-        }
+        self.make_symmetric_solver(lower)?;
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
             let values = self.values(configuration, iteration, proximal, lower);
@@ -111,6 +112,15 @@ impl System<'_> {
         self.symmetric.as_mut().ok_or(Singular)?.solve(right);
         if proximal > 0.0 {
             self.factored = None;
+        }
+        Ok(())
+    }
+
+    /// The pattern analysed, once.
+    pub(super) fn make_symmetric_solver(&mut self, lower: &Sparsity) -> Result<(), Singular> {
+        if self.symmetric.is_none() {
+            let order = self.order_of_elimination();
+            self.symmetric = Some(SymmetricSolver::new(&lower.pattern, &order)?);
         }
         Ok(())
     }
@@ -138,7 +148,7 @@ impl System<'_> {
     }
 
     /// The stiffness of the assembly; 1 on the diagonal of what is set aside.
-    fn values(
+    pub(super) fn values(
         &self,
         configuration: &Configuration,
         iteration: Iteration,

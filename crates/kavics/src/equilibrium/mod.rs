@@ -6,6 +6,7 @@ mod balance;
 mod block_stiffness;
 pub(crate) mod bond;
 pub(crate) mod configuration;
+pub(crate) mod elastic;
 mod elimination;
 mod error;
 mod iterative;
@@ -115,6 +116,9 @@ pub struct Event {
     pub load_factor: f64,
     /// What it happened to, and what.
     pub kind: EventKind,
+    /// Number of the avalanche it belongs to, over the whole run; only with event-driven breakage: events between
+    /// two new maxima of the load factor.
+    pub avalanche: Option<usize>,
 }
 
 /// The kinds of events.

@@ -245,6 +245,12 @@ impl<'a> System<'a> {
         }
     }
 
+    /// The largest force of a load at unknown freedoms.
+    pub fn free_size(&self, body: BodyId, load: Load) -> f64 {
+        self.free_part(body, load)
+            .largest_force(self.moment_arm(body))
+    }
+
     fn at_free_freedoms(&self, body: BodyId, load: Load) -> Load {
         let mut components = load.components();
         for (component, number) in components.iter_mut().zip(&self.numbers[body.index()]) {

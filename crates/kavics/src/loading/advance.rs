@@ -125,6 +125,7 @@ fn equilibrium(
             iteration,
             load_factor,
             kind,
+            avalanche: None,
         });
     way.events.extend(happened);
     for bond in configuration.bonds.values_mut() {
@@ -214,7 +215,7 @@ fn changes(contact: ContactId, old: Phase, new: Phase) -> [Option<EventKind>; 2]
     [first, slides.then_some(EventKind::Slid(contact))]
 }
 
-fn set_aside_events<'a>(
+pub(super) fn set_aside_events<'a>(
     before: &'a PerGrain<bool>,
     after: &'a PerGrain<bool>,
 ) -> impl Iterator<Item = EventKind> + 'a {
@@ -245,7 +246,7 @@ fn over_limit(point: &Point, tie_tolerance: f64, breakage: Breakage) -> Vec<Brea
     }
     let ties = tie_tolerance.max(10.0 * point.residual);
     let bound = match breakage {
-        Breakage::WorstFirst => worst * (1.0 - ties),
+        Breakage::WorstFirst | Breakage::EventDriven => worst * (1.0 - ties),
         Breakage::Simultaneous => 1.0 - ties,
     };
     bonds
@@ -296,6 +297,7 @@ fn break_bonds(
             iteration: way.progress.iterations,
             load_factor,
             kind,
+            avalanche: None,
         });
     }
     let (next, released) = equilibrium(system, &start, &vanishing, action, load_factor, way)?;
@@ -316,7 +318,7 @@ fn difference(a: ContactForce, b: ContactForce) -> ContactForce {
 }
 
 /// Refuses an equilibrium with a contact whose shear stiffness is lost; warns of what makes it less than it seems.
-fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failure> {
+pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result<(), Failure> {
     let (mut on_floor, mut unstable) = (0, 0);
     for (contact, bond) in point.configuration.bonds.iter() {
         if !bond.is_active() || bond.stiffness.hardening == 0.0 {
@@ -407,6 +409,7 @@ pub fn first_events(point: &Point) -> Vec<Event> {
             iteration: 0,
             load_factor: 0.0,
             kind: EventKind::SetAside(grain),
+            avalanche: None,
         })
         .collect()
 }

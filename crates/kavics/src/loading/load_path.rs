@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::advance::{self, Point, Way};
+use super::event_driven::EventDriven;
 use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
@@ -22,6 +23,7 @@ pub struct LoadPath<'a> {
     system: System<'a>,
     program: &'a Program,
     breakage: Breakage,
+    event_driven: EventDriven,
     point: Point,
     /// Stage and place of the next load step in it.
     next: (usize, usize),
@@ -31,12 +33,15 @@ pub struct LoadPath<'a> {
 }
 
 /// Factors at the two ends of a load step.
-struct LoadStep {
-    stage: usize,
-    from: Vec<f64>,
-    to: Vec<f64>,
+pub(super) struct LoadStep {
+    /// Index of the stage.
+    pub stage: usize,
+    /// Factor of each action at the start.
+    pub from: Vec<f64>,
+    /// And at the end.
+    pub to: Vec<f64>,
     /// The stage's load factor at the two ends.
-    load_factor: [f64; 2],
+    pub load_factor: [f64; 2],
 }
 
 impl LoadStep {
@@ -87,6 +92,7 @@ impl<'a> LoadPath<'a> {
             system,
             program,
             breakage,
+            event_driven: EventDriven::default(),
             point,
             next: (0, 0),
             step: 0,
@@ -158,16 +164,34 @@ impl<'a> LoadPath<'a> {
             let equilibrium = self.equilibrium(load_step.stage, load_factor, complete, cuts, way);
             self.waiting.push_back(Ok(equilibrium));
         }
-        if let Some(failure) = failure {
-            let tolerance = self.system.settings.tolerance;
-            self.waiting.push_back(Err(failure.at(
-                self.step,
-                load_factor,
-                self.system.assembly,
-                tolerance,
-            )));
-            self.failed = true;
+        self.end_with(failure, load_factor);
+    }
+
+    /// Finishes a load step event by event.
+    fn take_events(&mut self, load_step: &LoadStep) {
+        self.step += 1;
+        let mut way = Way::default();
+        let (system, point) = (&mut self.system, &mut self.point);
+        let reached = self
+            .event_driven
+            .advance(system, self.program, point, load_step, &mut way);
+        let complete = reached.failure.is_none();
+        if complete || reached.went_on {
+            let equilibrium =
+                self.equilibrium(load_step.stage, reached.load_factor, complete, 0, way);
+            self.waiting.push_back(Ok(equilibrium));
         }
+        self.end_with(reached.failure, reached.load_factor);
+    }
+
+    fn end_with(&mut self, failure: Option<Failure>, load_factor: f64) {
+        let Some(failure) = failure else {
+            return;
+        };
+        let tolerance = self.system.settings.tolerance;
+        let error = failure.at(self.step, load_factor, self.system.assembly, tolerance);
+        self.waiting.push_back(Err(error));
+        self.failed = true;
     }
 
     /// One part of a load step, where the secant finds no admissible phases by the tangent again.
@@ -257,7 +281,11 @@ impl Iterator for LoadPath<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         if self.waiting.is_empty() && !self.failed {
             let load_step = self.next_load_step()?;
-            self.take(&load_step);
+            if self.breakage == Breakage::EventDriven {
+                self.take_events(&load_step);
+            } else {
+                self.take(&load_step);
+            }
         }
         self.waiting.pop_front()
     }

@@ -3,6 +3,7 @@
 //! In: an assembly, its contact properties and a [`Program`]. Out: one equilibrium per load step.
 
 mod advance;
+mod event_driven;
 mod ledger;
 mod load_path;
 mod program;

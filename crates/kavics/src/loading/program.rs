@@ -62,6 +62,8 @@ pub enum Breakage {
     WorstFirst,
     /// All contacts beyond their limits break, then equilibrium is found again.
     Simultaneous,
+    /// One after the other, each at the factor at which it reaches its limit; the factor may fall.
+    EventDriven,
 }
 
 /// All that acts on an assembly from outside.

@@ -120,7 +120,7 @@ pub struct Sample {
 pub fn depends_on_state(system: &System<'_>, configuration: &Configuration) -> bool {
     configuration.bonds.values().iter().any(|bond| {
         bond.law(system.properties)
-            .is_some_and(|law| !law.is_linear(&bond.stiffness))
+            .is_some_and(|law| !law.is_linear())
     })
 }
 

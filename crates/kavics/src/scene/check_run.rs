@@ -174,15 +174,11 @@ fn breakage(word: Option<&Placed<String>>, checker: &mut Checker) -> Option<Brea
         return Some(Breakage::default());
     };
     let choices = [
-        ("worst-first", Some(Breakage::WorstFirst)),
-        ("simultaneous", Some(Breakage::Simultaneous)),
-        ("event-driven", None),
+        ("worst-first", Breakage::WorstFirst),
+        ("simultaneous", Breakage::Simultaneous),
+        ("event-driven", Breakage::EventDriven),
     ];
-    let breakage = checker.word(word, "breakage", &choices)?;
-    if breakage.is_none() {
-        checker.refuse(&word.span, "`breakage = \"event-driven\"`");
-    }
-    breakage
+    checker.word(word, "breakage", &choices)
 }
 
 fn window(file: &MeasureFile, checker: &mut Checker) -> Option<WindowPlan> {

@@ -1,0 +1,107 @@
+//! What acts from outside along a load step, on a straight line.
+
+use crate::equilibrium::configuration::Action;
+use crate::equilibrium::{Freedom, Load};
+use crate::ids::{BodyId, Id};
+use crate::loading::Program;
+use crate::loading::advance;
+use crate::loading::load_path::LoadStep;
+
+/// Loads and moves as functions of a factor x: `[a, b]` stands for a + x·b.
+///
+/// Where all actions of the stage start from the same factor, x is the load factor, so that the line is that of the
+/// whole stage; else it is the share of the load step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Acting {
+    /// Factor of each action.
+    factors: Vec<[f64; 2]>,
+    /// The load factor.
+    load_factor: [f64; 2],
+    /// Loads on each body.
+    pub loads: Vec<[Load; 2]>,
+    /// Values of the moved freedoms.
+    pub moved: Vec<(BodyId, Freedom, [f64; 2])>,
+}
+
+impl Acting {
+    /// What acts along a load step.
+    pub fn new(program: &Program, load_step: &LoadStep, bodies: usize) -> Self {
+        let (factors, load_factor) = lines(program, load_step);
+        let mut loads = vec![[Load::default(); 2]; bodies];
+        for applied in &program.loads {
+            let parts = factors[applied.action];
+            for (sum, part) in loads[applied.body.index()].iter_mut().zip(parts) {
+                *sum += applied.load * part;
+            }
+        }
+        let moved = program.prescribed.iter();
+        let moved = moved.map(|p| {
+            let parts = factors[p.action].map(|part| p.amplitude * part);
+            (p.body, p.freedom, parts)
+        });
+        Self {
+            load_factor,
+            loads,
+            moved: moved.collect(),
+            factors,
+        }
+    }
+
+    /// Whether nothing acts at x = 0.
+    pub fn is_proportional(&self) -> bool {
+        self.loads.iter().all(|load| load[0] == Load::default())
+            && self.moved.iter().all(|moved| moved.2[0] == 0.0)
+    }
+
+    /// The load factor at x.
+    pub fn load_factor(&self, x: f64) -> f64 {
+        self.load_factor[0] + x * self.load_factor[1]
+    }
+
+    /// The factor of each action at x.
+    pub fn factors(&self, x: f64) -> Vec<f64> {
+        self.factors.iter().map(|[a, b]| a + x * b).collect()
+    }
+
+    /// The action at x.
+    pub fn at(&self, program: &Program, x: f64) -> Action {
+        advance::action(program, &self.factors(x), self.loads.len())
+    }
+}
+
+/// Where a load step starts and ends, in x.
+pub fn ends(program: &Program, load_step: &LoadStep) -> [f64; 2] {
+    if is_common(program, load_step) {
+        load_step.load_factor
+    } else {
+        [0.0, 1.0]
+    }
+}
+
+/// Whether all actions of the stage start from the same factor.
+pub fn is_common(program: &Program, load_step: &LoadStep) -> bool {
+    let actions = program.stages[load_step.stage].actions.iter();
+    actions
+        .map(|&action| load_step.from[action])
+        .all(|from| from == load_step.load_factor[0])
+}
+
+/// Factor of each action, and the load factor, as lines.
+fn lines(program: &Program, load_step: &LoadStep) -> (Vec<[f64; 2]>, [f64; 2]) {
+    let driven = &program.stages[load_step.stage].actions;
+    if is_common(program, load_step) {
+        let line = |(action, &from)| {
+            if driven.contains(&action) {
+                [0.0, 1.0]
+            } else {
+                [from, 0.0]
+            }
+        };
+        let factors = load_step.from.iter().enumerate().map(line);
+        return (factors.collect(), [0.0, 1.0]);
+    }
+    let between = |(&from, &to): (&f64, &f64)| [from, to - from];
+    let factors = load_step.from.iter().zip(&load_step.to).map(between);
+    let [from, to] = load_step.load_factor;
+    (factors.collect(), [from, to - from])
+}

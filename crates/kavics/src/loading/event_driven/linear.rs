@@ -1,0 +1,355 @@
+//! Linear contacts: between two events the state is a straight line in the factor, u₀ + x·u₁, and each contact holds in
+//! an interval of it. The next event is the end of what these have in common, in the direction of loading:
+//!
+//! * the target lies before that end: the load step ends there;
+//! * else the factor goes there, up or down, and the contact breaks;
+//! * no factor is admissible, none back to where the factors began to run this way, or only factors ahead: the worst
+//!   contact breaks where the factor stands, again and again until the state is admissible.
+//!
+//! DeJong, Hendriks & Rots (2008); Eliáš, Frantík & Vořechovský (2010) for loads that stay constant.
+
+use super::acting::{self, Acting};
+use super::network::Network;
+use super::outer::{Outer, OuterPlaces};
+use super::spring::Interval;
+use super::{EventDriven, Reached, Run};
+use crate::contact_law::Mode;
+use crate::equilibrium::Load;
+use crate::equilibrium::configuration::Failure;
+use crate::equilibrium::system::System;
+use crate::ids::{BodyId, ContactId, PerBody};
+use crate::loading::Program;
+use crate::loading::advance::{self, Point, Way};
+use crate::loading::ledger::{self, Forces};
+use crate::loading::load_path::LoadStep;
+
+/// A residual below this share of the forces is rounding.
+const ROUNDING: f64 = 1e-13;
+/// A residual above this share of the forces, though solved for, says that the loads move a mechanism.
+const UNBALANCED: f64 = 1e-9;
+/// Solves after which a residual is what it is.
+const MOST_SOLVES: usize = 3;
+
+/// What is kept from event to event.
+#[derive(Clone, Debug)]
+pub struct Course {
+    pub network: Network,
+    pub places: OuterPlaces,
+    /// Whether nothing acts and nothing is strained at x = 0.
+    pub proportional: bool,
+    /// Floppy modes held in the factor.
+    pub held: usize,
+    /// Events since the factor was made.
+    pub events: usize,
+}
+
+/// A way through a load step.
+pub struct Walk<'w, 'a> {
+    pub system: &'w mut System<'a>,
+    pub program: &'w Program,
+    pub point: &'w mut Point,
+    pub way: &'w mut Way,
+    pub run: &'w mut Run,
+    pub course: Course,
+    /// The present factor.
+    pub x: f64,
+    /// The farthest factor of the load step.
+    pub farthest: f64,
+    /// What acts at the present factor.
+    pub outer: Outer,
+    /// Whether there is another equilibrium than that before the load step.
+    pub went_on: bool,
+}
+
+/// What comes next.
+enum Next {
+    Arrive,
+    Break(f64, Vec<(ContactId, Mode)>),
+}
+
+/// Takes a load step; `point` becomes the last equilibrium found.
+pub fn advance(
+    event_driven: &mut EventDriven,
+    system: &mut System<'_>,
+    program: &Program,
+    point: &mut Point,
+    load_step: &LoadStep,
+    way: &mut Way,
+) -> Reached {
+    let [start, target] = acting::ends(program, load_step);
+    let acting = Acting::new(program, load_step, system.assembly.body_count());
+    let kept = event_driven.course.take();
+    let (course, is_new) = Course::start(system, point, acting, kept);
+    let mut walk = Walk {
+        system,
+        program,
+        point,
+        way,
+        run: &mut event_driven.run,
+        course,
+        x: start,
+        farthest: start.abs().max(target.abs()),
+        outer: Outer::default(),
+        went_on: false,
+    };
+    let outcome = walk.begin(is_new).and_then(|()| walk.follow(target));
+    let failure = walk.end(outcome, target, load_step);
+    let reached = Reached {
+        load_factor: walk.load_factor(),
+        went_on: walk.went_on,
+        failure,
+    };
+    event_driven.course = Some(walk.course);
+    reached
+}
+
+impl Course {
+    /// The course of a line: the kept one where it is on the same. True: it has still to be brought into balance.
+    fn start(
+        system: &System<'_>,
+        point: &Point,
+        acting: Acting,
+        kept: Option<Self>,
+    ) -> (Self, bool) {
+        let configuration = &point.configuration;
+        let mut course = match kept {
+            Some(course) if course.network.acting == acting => return (course, false),
+            Some(mut course) => {
+                course.network.acting = acting;
+                course
+            }
+            None => Self {
+                network: Network::new(system, configuration, acting),
+                places: OuterPlaces::default(),
+                proportional: false,
+                held: 0,
+                events: usize::MAX,
+            },
+        };
+        course.places = OuterPlaces::new(system, &course.network);
+        let bonds = configuration.bonds.values();
+        course.proportional = course.network.acting.is_proportional()
+            && bonds
+                .iter()
+                .all(|bond| !bond.broken || bond.property.is_none());
+        (course, true)
+    }
+}
+
+impl Walk<'_, '_> {
+    /// Brings a new course into balance.
+    fn begin(&mut self, is_new: bool) -> Result<(), Failure> {
+        if is_new {
+            let before = self.system.set_aside.clone();
+            self.leave_out();
+            let network = &mut self.course.network;
+            network.start_again(self.system, &self.point.configuration);
+            let stale = self.course.events == usize::MAX || before != self.system.set_aside;
+            if stale && !self.factorise() || !self.balance() {
+                self.course.events = usize::MAX;
+                return Err(self.failure_from_here());
+            }
+            self.note_set_aside(self.load_factor(), None);
+        }
+        self.outer = self
+            .course
+            .places
+            .at(self.system, &self.course.network, self.x);
+        Ok(())
+    }
+
+    /// From event to event to the end of the load step.
+    fn follow(&mut self, target: f64) -> Result<(), Failure> {
+        loop {
+            match self.next(target) {
+                Next::Arrive => {
+                    self.go(target);
+                    self.run.reach(self.run.direction * target);
+                    return Ok(());
+                }
+                Next::Break(x, contacts) => {
+                    self.go(x);
+                    self.break_bonds(&contacts)?;
+                }
+            }
+        }
+    }
+
+    fn next(&self, target: f64) -> Next {
+        let direction = self.run.direction;
+        let network = &self.course.network;
+        let reach = network.reach(self.system, direction);
+        let Interval { lower, upper } = reach.interval;
+        let ties = self.ties();
+        let worst = |x| network.worst(self.system, x, ties);
+        if lower > upper.min(direction * self.x) || upper < self.run.back {
+            let (utilisation, contacts) = worst(self.x);
+            if utilisation > 1.0 + ties {
+                return Next::Break(self.x, contacts);
+            }
+        }
+        if direction * target <= upper {
+            return Next::Arrive;
+        }
+        let x = direction * upper;
+        let (_, contacts) = worst(x);
+        if contacts.iter().any(|(contact, _)| *contact == reach.last) {
+            Next::Break(x, contacts)
+        } else {
+            // Limits of zero, at a force of zero.
+            Next::Break(x, network.at_end(self.system, direction, upper))
+        }
+    }
+
+    /// Relative difference of utilisations below which contacts break together.
+    fn ties(&self) -> f64 {
+        let settings = &self.system.settings;
+        settings.tie_tolerance.max(10.0 * self.point.residual)
+    }
+
+    /// Goes along the line.
+    fn go(&mut self, x: f64) {
+        self.went_on |= x != self.x;
+        self.x = x;
+        self.arrive();
+    }
+
+    /// Counts the work of the straight way from where it was last counted.
+    pub fn arrive(&mut self) {
+        let outer = self
+            .course
+            .places
+            .at(self.system, &self.course.network, self.x);
+        self.point.energy.external_work += self.outer.work_to(&outer);
+        self.outer = outer;
+    }
+
+    /// The present load factor.
+    pub fn load_factor(&self) -> f64 {
+        self.course.network.acting.load_factor(self.x)
+    }
+
+    /// Leaves out what nothing holds and nothing on this line loads.
+    pub fn leave_out(&mut self) {
+        let acting = &self.course.network.acting;
+        let ever = acting.loads.iter().map(|[constant, rate]| {
+            let mut sum = constant.magnitude();
+            sum += rate.magnitude();
+            sum
+        });
+        let ever: PerBody<Load> = ever.collect();
+        let bonds = &self.point.configuration.bonds;
+        self.system.leave_out_loose_pieces(bonds, &ever);
+    }
+
+    /// A factor of the bonds as they are.
+    pub fn factorise(&mut self) -> bool {
+        let factor = self.system.factorise_bonds(&self.point.configuration);
+        self.course.events = 0;
+        self.course.held = factor.as_ref().map_or(0, |held| *held);
+        self.way.progress.held_pivots = self.course.held;
+        factor.is_ok()
+    }
+
+    /// Solves for what is unbalanced; whether nothing is any more.
+    pub fn balance(&mut self) -> bool {
+        for solve in 0.. {
+            let residual = self.course.network.residual(self.system, self.farthest);
+            let noise = self.system.noise();
+            if solve == MOST_SOLVES || residual.is_small(ROUNDING, noise) {
+                self.system.largest_force = self.system.largest_force.max(residual.force);
+                return residual.is_small(UNBALANCED, noise);
+            }
+            let answer = self.system.answer(&residual.unbalanced);
+            self.way.progress.iterations += 1;
+            let displacements = &mut self.course.network.displacements;
+            self.system.add_answer(displacements, &answer);
+        }
+        false
+    }
+
+    /// Why there is no equilibrium at the present factor with the bonds as they are, by the search for one.
+    pub fn failure_from_here(&mut self) -> Failure {
+        let action = self.course.network.acting.at(self.program, self.x);
+        let mut trial = self.point.configuration.clone();
+        let progress = &mut self.way.progress;
+        self.system.respond(&mut trial);
+        let searched = self.system.equilibrate(&mut trial, &action, progress);
+        searched
+            .err()
+            .unwrap_or_else(|| self.not_converged(BodyId(0)))
+    }
+
+    /// The equilibrium at the present factor becomes the point; answers why there is not more.
+    fn end(
+        &mut self,
+        outcome: Result<(), Failure>,
+        target: f64,
+        load_step: &LoadStep,
+    ) -> Option<Failure> {
+        let failure = outcome.err();
+        if failure.is_some() && !self.went_on {
+            return failure;
+        }
+        self.point.factors = if self.x == target {
+            load_step.to.clone()
+        } else {
+            self.course.network.acting.factors(self.x)
+        };
+        let polished = self.write(failure.is_none());
+        let checked = advance::check(self.system, self.point, self.way);
+        failure.or(polished.err()).or(checked.err())
+    }
+
+    /// Writes the state into the point, solved for again where it is not yet within the tolerance.
+    fn write(&mut self, has_factor: bool) -> Result<(), Failure> {
+        let action = advance::action(
+            self.program,
+            &self.point.factors,
+            self.system.assembly.body_count(),
+        );
+        let mut outcome = Ok(());
+        let mut tries = if has_factor { 0 } else { 2 };
+        let imbalance = loop {
+            let configuration = &mut self.point.configuration;
+            self.course
+                .network
+                .write(self.system, configuration, self.x);
+            let imbalance = self.system.imbalance(configuration, &action.loads);
+            self.point.residual = imbalance.residual(self.system.noise());
+            self.way.progress.residual = self.point.residual;
+            if self.point.residual <= self.system.settings.tolerance || tries == 2 {
+                if has_factor && self.point.residual > self.system.settings.tolerance {
+                    outcome = Err(self.not_converged(imbalance.at));
+                }
+                break imbalance;
+            }
+            if tries == 1 {
+                self.factorise();
+            }
+            self.balance();
+            self.arrive();
+            tries += 1;
+        };
+        self.system.largest_force = self.system.largest_force.max(imbalance.force);
+        self.point.forces = Forces {
+            loads: action.loads,
+            reactions: advance::reactions(self.system, &imbalance.unbalanced),
+        };
+        let properties = self.system.properties;
+        let configuration = &mut self.point.configuration;
+        self.point.energy.elastic_energy = ledger::elastic_energy(configuration, properties);
+        for bond in configuration.bonds.values_mut() {
+            bond.remember(properties);
+        }
+        outcome
+    }
+
+    fn not_converged(&self, at: BodyId) -> Failure {
+        Failure::NotConverged {
+            iterations: self.way.progress.iterations,
+            residual: self.way.progress.residual,
+            at,
+        }
+    }
+}

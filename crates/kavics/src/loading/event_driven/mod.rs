@@ -1,0 +1,110 @@
+//! Breakage event by event: each bond breaks at the very factor at which it reaches its limit.
+//!
+//! After a bond broke the factor goes on to where the next one reaches its limit, which may lie lower: the path of
+//! snap-back. Where all contacts are linear the factor of the next event is the end of an interval (`linear.rs`), else
+//! a root (`rooted.rs`).
+
+mod acting;
+mod breaking;
+mod linear;
+mod network;
+mod outer;
+mod spring;
+
+use self::linear::Course;
+use super::Program;
+use super::advance::{Point, Way};
+use super::load_path::LoadStep;
+use crate::equilibrium::configuration::Failure;
+use crate::equilibrium::system::System;
+
+/// Event-driven breakage: what is kept from one load step to the next.
+#[derive(Debug, Default)]
+pub struct EventDriven {
+    course: Option<Course>,
+    run: Run,
+}
+
+/// How far a load step came.
+#[derive(Debug)]
+pub struct Reached {
+    /// The load factor.
+    pub load_factor: f64,
+    /// Whether there is another equilibrium than that before the load step.
+    pub went_on: bool,
+    /// Why it came no farther.
+    pub failure: Option<Failure>,
+}
+
+/// A part of a stage in which factors do not turn. Factors count in the direction of loading.
+#[derive(Clone, Copy, Debug, Default)]
+struct Run {
+    stage: usize,
+    /// 1 where factors rise, −1 where they fall.
+    direction: f64,
+    /// Whether its line is that of the whole stage.
+    common: bool,
+    /// The factor falls no farther than to this: to zero, or to where the run began.
+    back: f64,
+    /// Highest factor reached.
+    highest: f64,
+    /// Whether an event has happened in it.
+    eventful: bool,
+    /// Avalanches so far, over the whole run.
+    avalanches: usize,
+}
+
+impl Run {
+    /// Goes on with a load step, in a new run where stage, line or direction change.
+    fn turn(&mut self, stage: usize, common: bool, [start, target]: [f64; 2]) {
+        let direction = if target < start { -1.0 } else { 1.0 };
+        let same = self.stage == stage && self.common && common;
+        if same && (direction == self.direction || start == target) {
+            return;
+        }
+        *self = Self {
+            stage,
+            direction,
+            common,
+            back: if common {
+                (direction * start).min(0.0)
+            } else {
+                0.0
+            },
+            highest: direction * start,
+            eventful: false,
+            avalanches: self.avalanches,
+        };
+    }
+
+    /// Number of the avalanche of an event: another one beyond all factors reached before.
+    fn avalanche(&mut self, factor: f64) -> usize {
+        if factor > self.highest || !self.eventful {
+            self.avalanches += 1;
+        }
+        self.eventful = true;
+        self.reach(factor);
+        self.avalanches - 1
+    }
+
+    fn reach(&mut self, factor: f64) {
+        self.highest = self.highest.max(factor);
+    }
+}
+
+impl EventDriven {
+    /// Takes a load step; `point` becomes the last equilibrium found.
+    pub fn advance(
+        &mut self,
+        system: &mut System<'_>,
+        program: &Program,
+        point: &mut Point,
+        load_step: &LoadStep,
+        way: &mut Way,
+    ) -> Reached {
+        let ends = acting::ends(program, load_step);
+        let common = acting::is_common(program, load_step);
+        self.run.turn(load_step.stage, common, ends);
+        linear::advance(self, system, program, point, load_step, way)
+    }
+}

@@ -1,0 +1,454 @@
+//! Event-driven breakage: closed forms, and the same order as worst-first.
+
+use std::path::Path;
+
+use kavics::equilibrium::{Equilibrium, Event, EventKind, SolveError};
+use kavics::ids::{ContactId, GrainId};
+use kavics::scene::Scene;
+
+fn scene(text: &str) -> Scene {
+    let lists = |_: &Path, _: Option<usize>| Err("no grain lists here".to_owned());
+    Scene::parse(text, "events.toml", Path::new("."), &lists).expect("a scene")
+}
+
+/// The equilibria, and why there are not more.
+fn run(text: &str) -> (Vec<Equilibrium>, Option<SolveError>) {
+    let scene = scene(text);
+    let mut found = Vec::new();
+    for equilibrium in scene.load_path() {
+        match equilibrium {
+            Ok(equilibrium) => found.push(equilibrium),
+            Err(error) => return (found, Some(error)),
+        }
+    }
+    (found, None)
+}
+
+fn breaks(path: &[Equilibrium]) -> Vec<Event> {
+    let events = path.iter().flat_map(|e| &e.events);
+    events
+        .filter(|e| matches!(e.kind, EventKind::Broke { .. }))
+        .copied()
+        .collect()
+}
+
+fn contacts(path: &[Equilibrium]) -> Vec<ContactId> {
+    let contact = |event: &Event| match event.kind {
+        EventKind::Broke { contact, .. } => Some(contact),
+        _ => None,
+    };
+    breaks(path).iter().filter_map(contact).collect()
+}
+
+fn energies(event: &Event) -> [f64; 2] {
+    match event.kind {
+        EventKind::Broke {
+            fracture_energy,
+            release_energy,
+            ..
+        } => [fracture_energy, release_energy],
+        _ => [f64::NAN; 2],
+    }
+}
+
+fn assert_close(found: f64, expected: f64, relative: f64) {
+    assert!(
+        (found - expected).abs() <= relative * expected.abs(),
+        "found {found}, expected {expected}"
+    );
+}
+
+fn assert_ledger_closes(path: &[Equilibrium]) {
+    for equilibrium in path {
+        let energy = equilibrium.energy;
+        assert!(
+            energy.ledger_error().abs() <= 1e-9 * energy.external_work.abs(),
+            "step {}: {:e} of {:e}",
+            equilibrium.step,
+            energy.ledger_error(),
+            energy.external_work
+        );
+    }
+}
+
+fn with(text: &str, breakage: &str, factors: &str) -> String {
+    text.replace("BREAKAGE", breakage)
+        .replace("FACTORS", factors)
+}
+
+/// Three equal discs, the lower contact weak in tension, the others in shear.
+const THREE_DISCS: &str = r#"
+[box]
+width = 4.0
+height = "fit"
+[grains.hexagonal]
+radius = 1.0
+rows = [2, 1]
+[contact.weak.cemented]
+stiffness.layer = { normal = 1.0, shear = 0.4 }
+dual_length = 1.2
+strength.force = { tension = 0.05 }
+[contact.firm.cemented]
+stiffness.layer = { normal = 1.0, shear = 0.4 }
+dual_length = 1.2
+strength.force = { shear = SHEAR }
+[[zone]]
+contact = "firm"
+[[zone]]
+contact = "weak"
+strip = { y = [0.0, 1.5] }
+[[support]]
+grains = { ids = [0] }
+fix = ["x", "y"]
+[[support]]
+grains = { ids = [1] }
+fix = ["y"]
+[[load]]
+name = "press"
+grains = { ids = [2] }
+force = { y = -1.0 }
+[[stage]]
+factors = FACTORS
+[equilibrium]
+breakage = "event-driven"
+"#;
+
+#[test]
+fn three_discs_break_at_their_closed_form_and_snap_back_to_the_second() {
+    let (kn, kt, km) = (1.2_f64, 0.48, 0.144);
+    let d = kn * kt + 3.0 * km * kn + 3.0 * km * kt;
+    let tension = 3.0_f64.sqrt() * (kn * kt + 3.0 * km * kn - 3.0 * km * kt) / (6.0 * d);
+    let first = 0.05 / tension;
+    // Before the break the inclined contacts carry 3·P·k_m·k_t/(2·D) of shear, after it P/4.
+    let second = 0.5 * first;
+    let shear = second / 4.0;
+    assert!(first * 1.5 * km * kt / d < shear);
+    let text = THREE_DISCS.replace("SHEAR", &shear.to_string());
+    let (path, error) = run(&text.replace("FACTORS", "[0.1, 1.0]"));
+    let events = breaks(&path);
+    assert_eq!(contacts(&path), [ContactId(0)]);
+    assert_close(events[0].load_factor, first, 1e-12);
+    let last = path.last().expect("an equilibrium");
+    assert!(!last.complete);
+    assert_close(last.load_factor, second, 1e-12);
+    let error = error.expect("a mechanism");
+    assert!(
+        matches!(error, SolveError::Mechanism { step: 2, ref grains, .. } if grains.contains(&GrainId(2))),
+        "{error}"
+    );
+    assert_ledger_closes(&path);
+}
+
+#[test]
+fn after_the_last_event_the_factor_goes_on_to_its_target() {
+    let text = THREE_DISCS.replace("SHEAR", "9.0");
+    let (path, error) = run(&text.replace("FACTORS", "[0.1, 1.0, 0.0, 1.0]"));
+    assert!(error.is_none());
+    let (kn, kt, km) = (1.2, 0.48, 0.144);
+    let after = -(kn * kt + km * kn + 3.0 * km * kt) / (8.0 * km * kn * kt);
+    for step in [2, 4] {
+        let u = path[step].state.displacements.values()[2];
+        assert_close(u.y, after, 1e-9);
+    }
+    let unloaded = path[3].state.displacements.values();
+    assert!(unloaded.iter().all(|u| u.x == 0.0 && u.y == 0.0));
+    assert_ledger_closes(&path);
+}
+
+/// A row of discs held at its left end, loaded across at its right one.
+const CANTILEVER: &str = r#"
+[box]
+width = 10.0
+height = "fit"
+[grains.hexagonal]
+radius = 1.0
+rows = [5]
+[contact.mortar.cemented]
+stiffness.direct = { normal = 100.0, shear = 50.0, moment = 20.0 }
+strength.force = { bending = 0.35 }
+[[support]]
+grains = { ids = [0] }
+fix = ["x", "y", "rotation"]
+[[load]]
+name = "tip"
+grains = { ids = [4] }
+force = { y = -1.0 }
+[[stage]]
+factors = [0.01, 1.0]
+[equilibrium]
+breakage = "event-driven"
+"#;
+
+#[test]
+fn a_cantilever_fails_at_its_root() {
+    let (path, error) = run(CANTILEVER);
+    let last = path.last().expect("an equilibrium");
+    // M = P·a at the root, a = 7 from the first contact to the last centre.
+    assert_close(last.load_factor, 0.35 / 7.0, 1e-12);
+    let error = error.expect("a mechanism");
+    assert!(
+        matches!(error, SolveError::Mechanism { step: 2, .. }),
+        "{error}"
+    );
+    // It is recognised before the bond breaks: the last equilibrium still has it.
+    assert!(last.state.contacts.values().iter().all(|c| !c.broken));
+    assert!(contacts(&path).is_empty());
+}
+
+/// A disc between two held ones, pulled to the right; the left bond breaks at tension 1.
+const BETWEEN: &str = r#"
+[box]
+width = 6.0
+height = "fit"
+[grains.hexagonal]
+radius = 1.0
+rows = [3]
+[contact.weak.cemented]
+stiffness.direct = { normal = 100.0, shear = 50.0, moment = 20.0 }
+strength.force = { tension = 1.0 }
+[contact.firm.cemented]
+stiffness.direct = { normal = 100.0, shear = 50.0, moment = 20.0 }
+[[zone]]
+contact = "firm"
+[[zone]]
+contact = "weak"
+strip = { x = [1.5, 2.5] }
+[[support]]
+grains = { ids = [0, 2] }
+fix = ["x", "y", "rotation"]
+[[load]]
+name = "constant"
+grains = { ids = [1] }
+force = { x = 1.0 }
+[[load]]
+name = "growing"
+grains = { ids = [1] }
+force = { x = 1.0 }
+"#;
+
+#[test]
+fn a_proportional_load_falls_with_the_break_and_nothing_is_set_free() {
+    let text = format!(
+        "{BETWEEN}\n[[stage]]\napply = [\"growing\"]\nfactors = [3.0]\n[equilibrium]\nbreakage = \"event-driven\"\n"
+    );
+    let (path, error) = run(&text);
+    assert!(error.is_none());
+    let event = breaks(&path)[0];
+    assert_close(event.load_factor, 2.0, 1e-12);
+    assert_close(energies(&event)[0], 0.5 / 100.0, 1e-12);
+    assert_eq!(energies(&event)[1], 0.0);
+    assert_ledger_closes(&path);
+}
+
+#[test]
+fn a_load_that_stays_constant_sets_energy_free() {
+    let text = format!(
+        "{BETWEEN}\n[[stage]]\napply = [\"constant\"]\nfactors = [0.5]\n[[stage]]\napply = [\"growing\"]\nfactors = [3.0]\n[equilibrium]\nbreakage = \"event-driven\"\n"
+    );
+    let (path, error) = run(&text);
+    assert!(error.is_none());
+    let event = breaks(&path)[0];
+    assert_close(event.load_factor, 1.5, 1e-12);
+    // At the constant load 2 the disc goes from 1/k to 2/k: work 2/k, ½/k of it for the bond, 1/k kept.
+    assert_close(energies(&event)[0], 0.5 / 100.0, 1e-12);
+    assert_close(energies(&event)[1], 0.5 / 100.0, 1e-10);
+    assert_ledger_closes(&path);
+}
+
+/// A block of scattered strengths, its lowest row held, its highest moved or loaded.
+const BLOCK: &str = r#"
+[box]
+width = 24.0
+height = "fit"
+[grains.hexagonal]
+radius = 1.0
+rows = { count = 9, longest = 12 }
+[contact.mortar.cemented]
+stiffness.layer = { normal = 1.0, shear = 0.4 }
+strength.stress = { tension = 0.01, shear = 0.02, bending = 0.02 }
+strength.scatter.weibull = { shape = 3.0 }
+[[support]]
+grains = { edge = "bottom" }
+fix = ["x", "y"]
+[weight]
+density = 1e-4
+ACTION
+[equilibrium]
+breakage = "BREAKAGE"
+"#;
+
+const MOVED: &str = r#"
+[[move]]
+name = "pull"
+grains = { edge = "top" }
+y = 1.0
+x = 0.3
+[[stage]]
+apply = ["pull"]
+factors = FACTORS
+"#;
+
+const LOADED: &str = r#"
+[[load]]
+name = "pull"
+edge = "top"
+normal = [0.02, 0.01]
+[[stage]]
+apply = ["pull"]
+factors = FACTORS
+"#;
+
+const WEIGHED: &str = r#"
+[[load]]
+name = "pull"
+edge = "top"
+normal = [0.02, 0.01]
+[[stage]]
+apply = ["weight"]
+factors = [1.0]
+[[stage]]
+apply = ["pull"]
+factors = FACTORS
+"#;
+
+fn assert_same_state(one: &Equilibrium, other: &Equilibrium) {
+    let pairs = one.state.displacements.values().iter();
+    let largest = pairs.clone().map(|u| u.x.hypot(u.y)).fold(0.0, f64::max);
+    for (a, b) in pairs.zip(other.state.displacements.values()) {
+        assert!(
+            (a.x - b.x).hypot(a.y - b.y) <= 1e-8 * largest,
+            "{a:?} {b:?}"
+        );
+    }
+}
+
+#[test]
+fn prescribed_motion_breaks_the_same_bonds_in_the_same_order_as_worst_first() {
+    let text = BLOCK.replace("ACTION", MOVED);
+    let steps = "{ to = 0.2, steps = 5 }";
+    let (events, error) = run(&with(&text, "event-driven", steps));
+    assert!(error.is_none());
+    let (coarse, _) = run(&with(&text, "worst-first", steps));
+    let (fine, _) = run(&with(&text, "worst-first", "{ to = 0.2, steps = 500 }"));
+    assert!(contacts(&events).len() > 20, "{}", contacts(&events).len());
+    assert_eq!(contacts(&events), contacts(&coarse));
+    assert_eq!(contacts(&events), contacts(&fine));
+    for step in 0..=5 {
+        assert_same_state(&events[step], &coarse[step]);
+        assert_same_state(&events[step], &fine[100 * step]);
+    }
+    assert_ledger_closes(&events);
+}
+
+#[test]
+fn a_load_breaks_the_same_bonds_in_the_same_order_as_worst_first() {
+    let text = BLOCK.replace("ACTION", LOADED);
+    let steps = "{ to = 1.0, steps = 5 }";
+    let (events, error) = run(&with(&text, "event-driven", steps));
+    assert!(
+        matches!(error, Some(SolveError::Mechanism { .. })),
+        "{error:?}"
+    );
+    let (coarse, _) = run(&with(&text, "worst-first", steps));
+    let (fine, _) = run(&with(&text, "worst-first", "{ to = 1.0, steps = 500 }"));
+    let order = contacts(&events);
+    assert!(contacts(&fine).len() > 3, "{}", contacts(&fine).len());
+    assert_eq!(order[..contacts(&coarse).len()], contacts(&coarse));
+    assert_eq!(order[..contacts(&fine).len()], contacts(&fine));
+    // Worst-first knows the load that the block bears to a share of 1e-4 of it.
+    let peak = breaks(&events)
+        .iter()
+        .map(|e| e.load_factor)
+        .fold(0.0, f64::max);
+    let borne = fine.last().expect("an equilibrium").load_factor;
+    assert_close(borne, peak, 2e-4);
+    assert_ledger_closes(&events);
+}
+
+#[test]
+fn avalanches_lie_between_two_new_maxima_of_the_factor() {
+    for action in [MOVED, LOADED] {
+        let text = with(
+            &BLOCK.replace("ACTION", action),
+            "event-driven",
+            "[0.2, 1.0]",
+        );
+        let (path, _) = run(&text);
+        let (mut highest, mut avalanche) = (0.0, None);
+        let mut reached = path.iter().map(|e| (e.step, e.load_factor));
+        let mut step = reached.next();
+        for equilibrium in &path {
+            for event in &equilibrium.events {
+                if event.load_factor > highest {
+                    avalanche = avalanche.map_or(Some(0), |number: usize| Some(number + 1));
+                    highest = event.load_factor;
+                }
+                assert_eq!(event.avalanche, avalanche);
+            }
+            highest = highest.max(step.map_or(0.0, |step| step.1));
+            step = reached.next();
+        }
+        assert!(avalanche.is_some_and(|number| number > 1));
+    }
+}
+
+#[test]
+fn with_constant_weight_every_equilibrium_is_admissible_and_the_ledger_closes() {
+    let text = BLOCK.replace("ACTION", WEIGHED);
+    let (path, error) = run(&with(&text, "event-driven", "{ to = 1.0, steps = 40 }"));
+    let factors: Vec<f64> = breaks(&path).iter().map(|e| e.load_factor).collect();
+    assert!(factors.len() > 20, "{factors:?} {error:?}");
+    assert_ledger_closes(&path);
+    let released: f64 = breaks(&path).iter().map(|e| energies(e)[1]).sum();
+    assert!(released > 0.0);
+    assert!(breaks(&path).iter().all(|e| energies(e)[1] > -1e-15));
+}
+
+/// Equal strengths, symmetric loads: bonds break in pairs and rows.
+const SYMMETRIC: &str = r#"
+[box]
+width = 10.0
+height = "fit"
+[grains.hexagonal]
+radius = 1.0
+rows = [5, 4, 5, 4, 5, 4, 5]
+[contact.mortar.cemented]
+stiffness.layer = { normal = 1.0, shear = 0.5 }
+strength.stress = { tension = 0.012, shear = 0.05, bending = 0.05 }
+[[support]]
+grains = { edge = "bottom" }
+fix = ["x", "y"]
+[[move]]
+name = "pull"
+grains = { edge = "top" }
+y = 1.0
+[[stage]]
+factors = FACTORS
+[equilibrium]
+breakage = "BREAKAGE"
+"#;
+
+#[test]
+fn ties_break_together() {
+    let (events, error) = run(&with(SYMMETRIC, "event-driven", "{ to = 0.5, steps = 5 }"));
+    assert!(error.is_none(), "{error:?}");
+    let (fine, _) = run(&with(SYMMETRIC, "worst-first", "{ to = 0.5, steps = 500 }"));
+    assert_eq!(contacts(&events), contacts(&fine));
+    let events = breaks(&events);
+    assert!(events.len() > 3);
+    let tied = |pair: &&[Event]| pair[0].load_factor == pair[1].load_factor;
+    assert!(2 * events.windows(2).filter(tied).count() >= events.len() - 1);
+}
+
+#[test]
+fn a_separated_specimen_carries_nothing() {
+    let (path, error) = run(&with(SYMMETRIC, "event-driven", "{ to = 0.5, steps = 5 }"));
+    assert!(error.is_none());
+    let last = path.last().expect("an equilibrium");
+    let forces = last.state.contacts.values().iter();
+    let largest = forces
+        .map(|c| c.force.normal.hypot(c.force.shear))
+        .fold(0.0, f64::max);
+    assert!(largest < 1e-12, "{largest:e}");
+    assert_ledger_closes(&path);
+}
