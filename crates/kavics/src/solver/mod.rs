@@ -2,10 +2,12 @@
 //!
 //! In: the pattern of a matrix, its values, right-hand sides. Out: solutions, and what the factor tells of the matrix.
 
+mod eigen;
 mod general;
 mod pattern;
 mod symmetric;
 
+pub use eigen::{EigenProblem, Eigenpairs};
 pub use general::GeneralSolver;
 pub use pattern::Pattern;
 pub use symmetric::SymmetricSolver;
