@@ -6,7 +6,7 @@ use super::configuration::{Configuration, Progress};
 use super::sparsity::{Sparsity, Stored};
 use super::system::System;
 use crate::ids::{Id, PerBody};
-use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
+use crate::solver::{GeneralSolver, Singular, SymmetricSolver, minimum_degree};
 
 /// From this many unknowns on, a factor is kept until the iteration drops it.
 const LARGE: usize = 10_000;
@@ -64,7 +64,8 @@ impl System<'_> {
         progress: &mut Progress,
     ) -> Result<(), Singular> {
         if self.symmetric.is_none() {
-            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern)?);
+            let order = minimum_degree(&self.lower.pattern)?;
+            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern, &order)?);
         }
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
@@ -73,11 +74,14 @@ impl System<'_> {
                 let solver = self.symmetric.as_mut().ok_or(Singular)?;
                 // A factorisation that fails leaves no factor behind.
                 self.factored = None;
-                let held = solver.factorise(&self.lower.pattern, &values)?;
-                self.factored = Some((values, held));
+                let inertia = solver.factorise(&self.lower.pattern, &values)?;
+                self.factored = Some((values, inertia));
             }
         }
-        progress.held_pivots = self.factored.as_ref().map_or(0, |(_, held)| *held);
+        progress.held_pivots = self
+            .factored
+            .as_ref()
+            .map_or(0, |(_, inertia)| inertia.held);
         self.symmetric.as_mut().ok_or(Singular)?.solve(right);
         if proximal > 0.0 {
             self.factored = None;

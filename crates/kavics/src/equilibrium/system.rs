@@ -9,7 +9,7 @@ use super::{Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
-use crate::solver::{GeneralSolver, SymmetricSolver};
+use crate::solver::{GeneralSolver, Inertia, SymmetricSolver};
 
 /// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
 pub struct System<'a> {
@@ -24,8 +24,8 @@ pub struct System<'a> {
     pub(super) full: Option<Sparsity>,
     pub(super) symmetric: Option<SymmetricSolver>,
     pub(super) general: Option<GeneralSolver>,
-    /// Values that the symmetric factor belongs to, and how many floppy modes it holds.
-    pub(super) factored: Option<(Vec<f64>, usize)>,
+    /// Values that the symmetric factor belongs to, and the signs of its pivots.
+    pub(super) factored: Option<(Vec<f64>, Inertia)>,
     /// Bodies left out: nothing holds and nothing loads their piece.
     pub set_aside: Vec<bool>,
     /// Largest contact force of any equilibrium so far: below its rounding there is no force.

@@ -35,7 +35,8 @@ impl GeneralSolver {
     /// # Errors
     /// Where no pivot is left.
     pub fn factorise(&mut self, pattern: &Pattern, values: &[f64]) -> Result<(), Singular> {
-        self.scale = pattern.scales(values);
+        self.scale.resize(pattern.order(), 1.0);
+        pattern.scales(values, &mut self.scale);
         let scaled = pattern.scaled(values, &self.scale);
         let scratch = self
             .symbolic

@@ -2,13 +2,20 @@
 //!
 //! In: the pattern of a matrix, its values, right-hand sides. Out: solutions, and what the factor tells of the matrix.
 
+mod analysis;
+mod downdate;
 mod eigen;
 mod general;
+mod inertia;
+mod panels;
 mod pattern;
+mod sweeps;
 mod symmetric;
 
+pub use analysis::minimum_degree;
 pub use eigen::{EigenProblem, Eigenpairs};
 pub use general::GeneralSolver;
+pub use inertia::Inertia;
 pub use pattern::Pattern;
 pub use symmetric::SymmetricSolver;
 

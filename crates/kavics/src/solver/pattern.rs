@@ -31,14 +31,12 @@ impl Pattern {
         SymbolicSparseColMatRef::new_checked(order, order, &self.column_start, None, &self.row)
     }
 
-    /// Scale of each unknown: one over the square root of its diagonal entry, 1 where that is not positive.
-    pub(super) fn scales(&self, values: &[f64]) -> Vec<f64> {
-        (0..self.order())
-            .map(|column| {
-                let entry = values[self.diagonal(column)];
-                if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }
-            })
-            .collect()
+    /// Scale of each unknown: one over the square root of its diagonal entry without sign, 1 where that is zero.
+    pub(super) fn scales(&self, values: &[f64], scale: &mut [f64]) {
+        for (column, scale) in scale.iter_mut().enumerate() {
+            let entry = values[self.diagonal(column)].abs();
+            *scale = if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 };
+        }
     }
 
     /// The values with rows and columns scaled.

@@ -1,0 +1,172 @@
+//! Solutions with the factor: sweeps forward (with L) and backward (with D and Lᵀ).
+//!
+//! A panel's rows are copied into a narrow vector, so that what costs time, the values of the factor, is read once and
+//! in order, several columns together.
+
+use std::array::from_fn;
+
+use super::panels::{Panel, Panels};
+
+/// Sums that are carried side by side, for the processor to add several numbers at once.
+const LANES: usize = 4;
+
+/// Eliminates the columns of a panel from its part of R vectors: x ← L⁻¹x.
+pub(super) fn forward<const R: usize>(panel: &Panel, values: &[f64], local: &mut [f64]) {
+    let mut column = 0;
+    while column < panel.columns {
+        let width = width(panel.columns - column);
+        for x in local.chunks_exact_mut(panel.rows).take(R) {
+            match width {
+                4 => forward_columns::<4>(panel.rows, column, values, x),
+                3 => forward_columns::<3>(panel.rows, column, values, x),
+                2 => forward_columns::<2>(panel.rows, column, values, x),
+                _ => forward_columns::<1>(panel.rows, column, values, x),
+            }
+        }
+        column += width;
+    }
+}
+
+/// How many columns are taken together.
+fn width(left: usize) -> usize {
+    match left {
+        1..=3 => left,
+        5 | 6 | 9 => 3,
+        _ => 4,
+    }
+}
+
+fn forward_columns<const W: usize>(rows: usize, first: usize, values: &[f64], x: &mut [f64]) {
+    let below = first + W;
+    let (own, x) = x.split_at_mut(below);
+    let own = &mut own[first..];
+    for j in 0..W {
+        for i in j + 1..W {
+            own[i] -= values[(first + j) * rows + first + i] * own[j];
+        }
+    }
+    let columns: [&[f64]; W] = from_fn(|j| &values[(first + j) * rows + below..][..x.len()]);
+    for (i, x) in x.iter_mut().enumerate() {
+        let mut sum = *x;
+        for j in 0..W {
+            sum -= columns[j][i] * own[j];
+        }
+        *x = sum;
+    }
+}
+
+/// The way back through a panel: x ← L⁻ᵀD⁻¹x.
+pub(super) fn backward<const R: usize>(panel: &Panel, values: &[f64], local: &mut [f64]) {
+    let mut end = panel.columns;
+    while end > 0 {
+        let width = width(end);
+        end -= width;
+        for x in local.chunks_exact_mut(panel.rows).take(R) {
+            match width {
+                4 => backward_columns::<4>(panel.rows, end, values, x),
+                3 => backward_columns::<3>(panel.rows, end, values, x),
+                2 => backward_columns::<2>(panel.rows, end, values, x),
+                _ => backward_columns::<1>(panel.rows, end, values, x),
+            }
+        }
+    }
+}
+
+fn backward_columns<const W: usize>(rows: usize, first: usize, values: &[f64], x: &mut [f64]) {
+    let below = first + W;
+    let (own, x) = x.split_at_mut(below);
+    let own = &mut own[first..];
+    let columns: [&[f64]; W] = from_fn(|j| &values[(first + j) * rows + below..][..x.len()]);
+    let products = products(&columns, x);
+    for j in (0..W).rev() {
+        let column = &values[(first + j) * rows + first..];
+        let mut sum = own[j] / column[j] - products[j];
+        for i in j + 1..W {
+            sum -= column[i] * own[i];
+        }
+        own[j] = sum;
+    }
+}
+
+/// The product of each column with a vector.
+fn products<const W: usize>(columns: &[&[f64]; W], x: &[f64]) -> [f64; W] {
+    let whole = x.len() - x.len() % LANES;
+    let mut sums = [[0.0; LANES]; W];
+    for start in (0..whole).step_by(LANES) {
+        let x: [f64; LANES] = from_fn(|lane| x[start + lane]);
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let column = &column[start..start + LANES];
+            for lane in 0..LANES {
+                sums[lane] += column[lane] * x[lane];
+            }
+        }
+    }
+    from_fn(|j| {
+        let [a, b, c, d] = sums[j];
+        let rest = columns[j][whole..].iter().zip(&x[whole..]);
+        (a + c) + (b + d) + rest.map(|(l, x)| l * x).sum::<f64>()
+    })
+}
+
+/// Solves with L for R vectors of the whole length, one behind the other.
+pub(super) fn forward_all<const R: usize>(
+    panels: &Panels,
+    factor: &[f64],
+    x: &mut [f64],
+    local: &mut [f64],
+) {
+    let order = x.len() / R;
+    for panel in &panels.list {
+        gather::<R>(panels, panel, order, x, local);
+        forward::<R>(panel, &factor[panel.values()], local);
+        scatter::<R>(panels, panel, order, local, x);
+    }
+}
+
+/// Solves with DLᵀ for R vectors of the whole length, one behind the other.
+pub(super) fn backward_all<const R: usize>(
+    panels: &Panels,
+    factor: &[f64],
+    x: &mut [f64],
+    local: &mut [f64],
+) {
+    let order = x.len() / R;
+    for panel in panels.list.iter().rev() {
+        gather::<R>(panels, panel, order, x, local);
+        backward::<R>(panel, &factor[panel.values()], local);
+        for (x, local) in x
+            .chunks_exact_mut(order)
+            .zip(local.chunks_exact(panel.rows))
+        {
+            x[panel.own()].copy_from_slice(&local[..panel.columns]);
+        }
+    }
+}
+
+/// Copies the rows of a panel out of R vectors.
+pub(super) fn gather<const R: usize>(
+    panels: &Panels,
+    panel: &Panel,
+    order: usize,
+    x: &[f64],
+    local: &mut [f64],
+) {
+    let parts = local.chunks_exact_mut(panel.rows).take(R);
+    for (local, x) in parts.zip(x.chunks_exact(order)) {
+        panels.gather(panel, x, local);
+    }
+}
+
+/// Copies them back.
+pub(super) fn scatter<const R: usize>(
+    panels: &Panels,
+    panel: &Panel,
+    order: usize,
+    local: &[f64],
+    x: &mut [f64],
+) {
+    let parts = local.chunks_exact(panel.rows).take(R);
+    for (local, x) in parts.zip(x.chunks_exact_mut(order)) {
+        panels.scatter(panel, local, x);
+    }
+}
