@@ -5,6 +5,8 @@
 //! several times is overlooked (Parlett, The Symmetric Eigenvalue Problem, 1980, chapters 11 and 13).
 
 use faer::diag::Diag;
+use std::ops::Range;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{self, ComputeEigenvectors};
 use faer::{Mat, MatRef, Par};
@@ -16,15 +18,17 @@ use super::{Singular, SymmetricSolver, minimum_degree};
 const DENSE: [usize; 2] = [150, 12];
 /// Distance of the first shift from zero, as a share of the scale.
 const SHIFT: f64 = 1e-6;
-/// How often the shift is moved away by a factor of ten to come below the lowest eigenvalue.
-const MOST_SHIFTS: usize = 14;
+/// Shifts, each ten times as far below zero as the one before, until they are below the lowest eigenvalue.
+const MOST_SHIFTS: usize = 16;
 /// Vectors of a block beyond those that are wanted.
 const SPARE: usize = 2;
 /// Blocks of the basis before it is restarted, and restarts.
 const MOST_BLOCKS: usize = 10;
 const MOST_RESTARTS: usize = 100;
-/// Residual of an eigenpair that is good enough, as a share of its distance from the shift.
+/// Residual of an eigenpair that is good enough, as a share of the eigenvalue.
 const TOLERANCE: f64 = 1e-8;
+/// Rounding of a product with the matrix, as a share of its largest entry.
+const NOISE: f64 = 1e-14;
 /// A vector of which less than this share is new is none.
 const NOTHING_NEW: f64 = 1e-10;
 
@@ -118,46 +122,58 @@ impl EigenProblem<'_> {
     }
 
     fn by_krylov(&self, count: usize) -> Result<Eigenpairs, Singular> {
-        let (mut solver, shift) = self.factor_below_all()?;
-        let width = count + SPARE;
-        let mut basis = Basis::new(self.weights);
-        for column in 0..width {
-            basis.add_inverse(&mut solver, &scattered(self.pattern.order(), column));
+        let mut basis = Basis::new(self);
+        let mut slices = self.slices(count)?;
+        while let Some((shift, wanted)) = slices.pop() {
+            let (mut solver, _) = self.factor(shift)?;
+            basis = basis.with_lowest(&mut solver, wanted)?;
         }
-        let mut last = 0..basis.len();
-        for _ in 0..MOST_RESTARTS * MOST_BLOCKS {
-            let ritz = basis.ritz()?;
-            if basis.len() < count {
-                return Err(Singular);
-            }
-            if last.is_empty() || basis.worst_residual(&ritz, count) <= TOLERANCE {
-                return Ok(basis.eigenpairs(&ritz, count, shift));
-            }
-            if basis.len() + width > MOST_BLOCKS * width {
-                basis = basis.restarted(&ritz, 2 * width);
-                last = 0..width;
-            }
-            let start = basis.len();
-            for column in last {
-                let from = basis.vectors[column].clone();
-                basis.add_inverse(&mut solver, &from);
-            }
-            last = start..basis.len();
-        }
-        Err(Singular)
+        Ok(basis.into_eigenpairs())
     }
 
-    /// A factor with a shift below all eigenvalues, and the shift.
-    fn factor_below_all(&self) -> Result<(SymmetricSolver, f64), Singular> {
-        let mut shift = -SHIFT * self.scale;
-        for _ in 0..MOST_SHIFTS {
-            let (solver, below) = self.factor(shift)?;
-            if below == 0 {
-                return Ok((solver, shift));
+    /// Shifts, the first just below zero, the others farther below until nothing lies below; and how many eigenvalues are to
+    /// be known with each of them, those below it included.
+    fn slices(&self, count: usize) -> Result<Vec<(f64, usize)>, Singular> {
+        let (mut shift, mut wanted) = (-SHIFT * self.scale, count);
+        let mut slices = Vec::new();
+        while wanted > 0 {
+            if slices.len() == MOST_SHIFTS {
+                return Err(Singular);
             }
+            slices.push((shift, wanted));
+            wanted = wanted.min(self.count_below(shift)?);
             shift *= 10.0;
         }
-        Err(Singular)
+        Ok(slices)
+    }
+
+    /// K·x.
+    fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for column in 0..x.len() {
+            let (mut sum, start) = (0.0, self.pattern.column_start[column]);
+            for entry in start..self.pattern.column_start[column + 1] {
+                let (row, value) = (self.pattern.row[entry], self.values[entry]);
+                product[row] += value * x[column];
+                if row != column {
+                    sum += value * x[row];
+                }
+            }
+            product[column] += sum;
+        }
+        product
+    }
+
+    /// The rounding of K·x, of a vector of length 1.
+    fn noise(&self) -> f64 {
+        let size = |(column, weight)| self.values[self.pattern.diagonal(column)].abs() / weight;
+        NOISE
+            * self
+                .weights
+                .iter()
+                .enumerate()
+                .map(size)
+                .fold(0.0, f64::max)
     }
 }
 
@@ -170,23 +186,23 @@ fn scattered(order: usize, column: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Vectors v with vᵢᵀ·D·vⱼ = δᵢⱼ, and what the shifted matrix makes of them.
+/// Vectors v with vᵢᵀ·D·vⱼ = δᵢⱼ, and K·v of each.
 struct Basis<'a> {
-    weights: &'a [f64],
+    problem: &'a EigenProblem<'a>,
     vectors: Vec<Vec<f64>>,
     images: Vec<Vec<f64>>,
 }
 
-/// Distances of the approximate eigenvalues from the shift, and their vectors in the basis.
+/// Approximate eigenvalues in rising order, and their vectors in the basis.
 struct Ritz {
-    distances: Vec<f64>,
+    values: Vec<f64>,
     shares: Mat<f64>,
 }
 
 impl<'a> Basis<'a> {
-    fn new(weights: &'a [f64]) -> Self {
+    fn new(problem: &'a EigenProblem<'a>) -> Self {
         Self {
-            weights,
+            problem,
             vectors: Vec::new(),
             images: Vec::new(),
         }
@@ -196,32 +212,72 @@ impl<'a> Basis<'a> {
         self.vectors.len()
     }
 
-    /// Adds what is new of (K − σD)⁻¹·D·x.
-    fn add_inverse(&mut self, solver: &mut SymmetricSolver, x: &[f64]) {
-        let mut image: Vec<f64> = x.iter().zip(self.weights).map(|(x, d)| x * d).collect();
-        let mut vector = image.clone();
-        solver.solve(&mut vector);
+    /// The basis of the lowest eigenvectors, from one that holds those below the shift of the factor.
+    fn with_lowest(mut self, solver: &mut SymmetricSolver, count: usize) -> Result<Self, Singular> {
+        let (known, width) = (self.len(), count - self.len() + SPARE);
+        let most = known + MOST_BLOCKS * width;
+        let mut last = self.add_block(solver, |column, order| scattered(order, column), 0..width);
+        for _ in 0..MOST_RESTARTS * MOST_BLOCKS {
+            let ritz = self.ritz()?;
+            if last.is_empty() || self.is_good(&ritz, count) {
+                let found = self.first(&ritz, count);
+                return if found.len() == count {
+                    Ok(found)
+                } else {
+                    Err(Singular)
+                };
+            }
+            if self.len() + width > most {
+                self = self.first(&ritz, count + width);
+                last = known..known + width;
+            }
+            let from = self.vectors[last.clone()].to_vec();
+            last = self.add_block(solver, |column, _| from[column].clone(), 0..from.len());
+        }
+        Err(Singular)
+    }
+
+    /// Adds what is new of (K − σD)⁻¹·D·x for some x; answers where it stands.
+    fn add_block(
+        &mut self,
+        solver: &mut SymmetricSolver,
+        x: impl Fn(usize, usize) -> Vec<f64>,
+        columns: Range<usize>,
+    ) -> Range<usize> {
+        let start = self.len();
+        for column in columns {
+            let mut vector = x(column, self.problem.weights.len());
+            for (value, weight) in vector.iter_mut().zip(self.problem.weights) {
+                *value *= weight;
+            }
+            solver.solve(&mut vector);
+            self.add(vector);
+        }
+        start..self.len()
+    }
+
+    /// Adds what is new of a vector.
+    fn add(&mut self, mut vector: Vec<f64>) {
         let before = self.norm(&vector);
         // Once more, as the first pass leaves rounding of what it takes away.
         for _ in 0..2 {
-            for (other, its_image) in self.vectors.iter().zip(&self.images) {
+            for other in &self.vectors {
                 let share = self.inner(other, &vector);
                 add(&mut vector, other, -share);
-                add(&mut image, its_image, -share);
             }
         }
         let norm = self.norm(&vector);
         if norm > NOTHING_NEW * before {
-            for value in vector.iter_mut().chain(&mut image) {
+            for value in &mut vector {
                 *value /= norm;
             }
+            self.images.push(self.problem.times(&vector));
             self.vectors.push(vector);
-            self.images.push(image);
         }
     }
 
     fn inner(&self, a: &[f64], b: &[f64]) -> f64 {
-        let products = a.iter().zip(b).zip(self.weights);
+        let products = a.iter().zip(b).zip(self.problem.weights);
         products.map(|((a, b), d)| a * b * d).sum()
     }
 
@@ -232,57 +288,58 @@ impl<'a> Basis<'a> {
     /// The approximate eigenpairs in the space of the basis.
     fn ritz(&self) -> Result<Ritz, Singular> {
         let entry = |i: usize, j: usize| dot(&self.vectors[i], &self.images[j]);
-        let projected = Mat::from_fn(self.len(), self.len(), |i, j| {
-            0.5 * (entry(i, j) + entry(j, i))
+        let projected = Mat::from_fn(self.len(), self.len(), |i, j| entry(i.max(j), i.min(j)));
+        let (values, shares) = symmetric_eigen(projected.as_ref())?;
+        Ok(Ritz { values, shares })
+    }
+
+    /// Whether the first eigenpairs leave residuals that are small against their distance from zero.
+    fn is_good(&self, ritz: &Ritz, count: usize) -> bool {
+        let least = SHIFT * self.problem.scale;
+        let noise = self.problem.noise();
+        self.len() >= count
+            && (0..count).all(|j| {
+                let bound = TOLERANCE * ritz.values[j].abs().max(least);
+                self.residual(ritz, j) <= bound.max(noise)
+            })
+    }
+
+    /// ‖K·x − λ·D·x‖ in the norm of D⁻¹.
+    fn residual(&self, ritz: &Ritz, which: usize) -> f64 {
+        let x = combined(&self.vectors, ritz, which);
+        let image = combined(&self.images, ritz, which);
+        let left = x.iter().zip(&image).zip(self.problem.weights);
+        let squares = left.map(|((x, image), d)| {
+            let rest = image - ritz.values[which] * d * x;
+            rest * rest / d
         });
-        let (distances, shares) = symmetric_eigen(projected.as_ref())?;
-        Ok(Ritz { distances, shares })
-    }
-
-    fn combined(&self, columns: &[Vec<f64>], ritz: &Ritz, which: usize) -> Vec<f64> {
-        let mut sum = vec![0.0; self.weights.len()];
-        for (i, column) in columns.iter().enumerate() {
-            add(&mut sum, column, ritz.shares[(i, which)]);
-        }
-        sum
-    }
-
-    /// The largest residual of the first eigenpairs over the distance from the shift.
-    fn worst_residual(&self, ritz: &Ritz, count: usize) -> f64 {
-        let residual = |j: usize| {
-            let distance = ritz.distances[j];
-            let x = self.combined(&self.vectors, ritz, j);
-            let image = self.combined(&self.images, ritz, j);
-            let left = x.iter().zip(&image).zip(self.weights);
-            let square: f64 = left
-                .map(|((x, image), d)| (image - distance * d * x) * (image - distance * d * x) / d)
-                .sum();
-            square.sqrt() / distance
-        };
-        (0..count).map(residual).fold(0.0, f64::max)
+        squares.sum::<f64>().sqrt()
     }
 
     /// The basis of the first approximate eigenvectors.
-    fn restarted(&self, ritz: &Ritz, count: usize) -> Self {
-        let kept = 0..count.min(self.len());
-        Self {
-            weights: self.weights,
-            vectors: kept
-                .clone()
-                .map(|j| self.combined(&self.vectors, ritz, j))
-                .collect(),
-            images: kept.map(|j| self.combined(&self.images, ritz, j)).collect(),
+    fn first(&self, ritz: &Ritz, count: usize) -> Self {
+        let mut first = Self::new(self.problem);
+        for which in 0..count.min(self.len()) {
+            first.add(combined(&self.vectors, ritz, which));
         }
+        first
     }
 
-    fn eigenpairs(&self, ritz: &Ritz, count: usize, shift: f64) -> Eigenpairs {
+    fn into_eigenpairs(self) -> Eigenpairs {
+        let pairs = self.vectors.iter().zip(&self.images);
         Eigenpairs {
-            values: ritz.distances[..count].iter().map(|d| shift + d).collect(),
-            vectors: (0..count)
-                .map(|j| self.combined(&self.vectors, ritz, j))
-                .collect(),
+            values: pairs.map(|(x, image)| dot(x, image)).collect(),
+            vectors: self.vectors,
         }
     }
+}
+
+fn combined(columns: &[Vec<f64>], ritz: &Ritz, which: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; columns[0].len()];
+    for (i, column) in columns.iter().enumerate() {
+        add(&mut sum, column, ritz.shares[(i, which)]);
+    }
+    sum
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
