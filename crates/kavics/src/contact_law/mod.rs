@@ -39,6 +39,19 @@ pub struct ContactForce {
     pub moment: f64,
 }
 
+impl ContactForce {
+    /// k·v.
+    pub fn linear(k: &Matrix, v: RelativeDisplacement) -> Self {
+        let [normal, shear, moment] =
+            k.map(|row| row[0] * v.normal + row[1] * v.shear + row[2] * v.rotation);
+        Self {
+            normal,
+            shear,
+            moment,
+        }
+    }
+}
+
 /// How a contact carries what it carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Phase {

@@ -14,12 +14,16 @@ mod kinematics;
 mod linear;
 mod search;
 mod sparsity;
+mod stability;
 pub(crate) mod system;
+mod tangent;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
+pub use stability::{EigenMode, Stability, ZERO_EIGENVALUE, second_order_work};
+pub use tangent::relax;
 
-use crate::contact_law::{ContactForce, Mode, Phase, RelativeDisplacement};
+use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};
 
 /// Displacement of a grain or side.
@@ -92,6 +96,10 @@ pub struct Settings {
     pub work_tolerance: f64,
     /// Whether the iterates are kept beside the equilibria.
     pub keep_iterates: bool,
+    /// How many of the lowest modes of the tangent come with each equilibrium; with 0 its stability is not sought.
+    pub modes: usize,
+    /// Whether the tangents of the contacts come with each equilibrium.
+    pub keep_tangents: bool,
 }
 
 impl Default for Settings {
@@ -103,6 +111,8 @@ impl Default for Settings {
             tie_tolerance: 1e-9,
             work_tolerance: 1e-6,
             keep_iterates: false,
+            modes: 0,
+            keep_tangents: false,
         }
     }
 }
@@ -294,4 +304,8 @@ pub struct Equilibrium {
     pub warnings: Vec<Warning>,
     /// The way to it, when asked for.
     pub iterates: Vec<Iterate>,
+    /// Its stability, when asked for; none before loading, and where the modes were not found.
+    pub stability: Option<Stability>,
+    /// ∂Q/∂v of each contact, rows normal, shear, moment, columns opening, shear, rotation, when asked for.
+    pub tangents: Option<PerContact<Matrix>>,
 }

@@ -8,6 +8,7 @@ mod block;
 mod block_matrix;
 mod conjugate_gradients;
 mod downdate;
+mod eigen;
 mod general;
 mod inertia;
 mod iterative;
@@ -23,6 +24,7 @@ mod symmetric;
 
 pub use analysis::minimum_degree;
 pub use block_matrix::{BlockMatrix, RowSum};
+pub use eigen::{EigenProblem, Eigenpairs};
 pub use general::GeneralSolver;
 pub use inertia::Inertia;
 pub use iterative::{BlockSystem, Iterated, IterativeSolver, Solution};
