@@ -18,6 +18,7 @@ pub(super) enum Side {
 }
 
 /// The middle of a graph that is to be cut.
+#[derive(Debug)]
 pub(super) struct Middle {
     /// Neighbours in the middle of each node; numbers rise from the first side to the second.
     pub graph: Graph,
