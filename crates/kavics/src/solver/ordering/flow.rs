@@ -119,12 +119,11 @@ impl<'a> Flow<'a> {
             if stop.is_behind() && self.middle.beside[stop.node() as usize][1] {
                 return true;
             }
-            match self.further(stop) {
-                Some(next) => self.visit(next),
-                None => {
-                    self.path.pop();
-                    self.tried.pop();
-                }
+            if let Some(next) = self.further(stop) {
+                self.visit(next);
+            } else {
+                self.path.pop();
+                self.tried.pop();
             }
         }
         false
