@@ -28,7 +28,12 @@ fn steps_has_the_columns_of_the_contract_in_their_order() {
         variation_stress_xx variation_stress_xy variation_stress_yx variation_stress_yy \
         fabric_stress_xx fabric_stress_xy fabric_stress_yx fabric_stress_yy isotropic_stress \
         strain_xx strain_xy strain_yx strain_yy contact_work macroscopic_work boundary_work \
-        external_work elastic_energy fracture_energy friction_work nonpotential_work release_energy ledger_error";
+        external_work elastic_energy fracture_energy friction_work nonpotential_work release_energy ledger_error \
+        lowest_eigenvalue negative_eigenvalues zero_eigenvalues static_indeterminacy second_order_work \
+        modulus_xxxx modulus_xxyy modulus_xxxy modulus_yyxx modulus_yyyy modulus_yyxy modulus_xyxx modulus_xyyy \
+        modulus_xyxy voigt_modulus_xxxx voigt_modulus_xxyy voigt_modulus_xxxy voigt_modulus_yyxx voigt_modulus_yyyy \
+        voigt_modulus_yyxy voigt_modulus_xyxx voigt_modulus_xyyy voigt_modulus_xyxy \
+        bulk_modulus shear_modulus modulus_anisotropy modulus_asymmetry";
     let names: Vec<String> = kavics_results::step_columns()
         .into_iter()
         .map(|column| column.name)

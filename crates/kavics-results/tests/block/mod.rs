@@ -260,7 +260,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
         } else {
             Vec::new()
         },
-        iterates: Vec::new(),
+        ..Equilibrium::default()
     }
 }
 
