@@ -9,6 +9,8 @@ mod comparison;
 mod curves;
 mod error;
 mod graph;
+mod modes;
+mod moduli;
 mod number;
 mod packing;
 mod page;

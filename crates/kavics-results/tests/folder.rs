@@ -92,6 +92,45 @@ fn tables_of_a_recorded_step_have_the_columns_of_the_contract() {
 }
 
 #[test]
+fn modes_are_written_where_they_are_sought() {
+    let place = place();
+    let (without, with) = (place.path().join("without"), place.path().join("with"));
+    let mut scene = block::scene(7, 5);
+    block::write(&without, &scene);
+    assert!(!without.join("modes").exists());
+    scene.settings.modes = 1;
+    block::write(&with, &scene);
+    let results = ResultsFolder::open(&with).unwrap();
+    assert!(results.modes(0).unwrap().is_none(), "before loading");
+    let modes = results.modes(5).unwrap().expect("a table");
+    assert_eq!(
+        modes.names().join(" "),
+        "step mode eigenvalue participation grain ux uy rotation"
+    );
+    assert_eq!(modes.len(), scene.assembly.grains.len());
+    assert_eq!(modes.numbers("eigenvalue").unwrap()[0], 0.125);
+    let steps = results.steps().unwrap();
+    assert_eq!(steps.numbers("lowest_eigenvalue").unwrap(), [0.125; 5]);
+    assert_eq!(
+        steps.integers("static_indeterminacy").unwrap(),
+        [Some(90); 5]
+    );
+    // K = 40, G = 20: C_xxxx = K + G, C_xxyy = K − G, C_xyxy = G.
+    let row = |name: &str| steps.numbers(name).unwrap()[0];
+    assert_eq!(
+        [
+            row("modulus_xxxx"),
+            row("modulus_yyxx"),
+            row("modulus_xyxy")
+        ],
+        [60.0, 20.0, 20.0]
+    );
+    assert_eq!([row("bulk_modulus"), row("shear_modulus")], [40.0, 20.0]);
+    // A later run takes the room of the modes, too.
+    assert!(check_room(&with, true).is_ok());
+}
+
+#[test]
 fn what_was_pushed_reads_back() {
     let place = place();
     let folder = place.path().join("block.results");
