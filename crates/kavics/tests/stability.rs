@@ -245,7 +245,7 @@ fn three_discs_without_their_lower_contact_are_a_mechanism() {
     let summary = summary(&scene);
     assert_eq!(
         (summary.static_indeterminacy, summary.zero_eigenvalues),
-        (2, 2)
+        (0, 2)
     );
     assert_eq!(summary.negative_eigenvalues, 0);
 }
