@@ -20,7 +20,7 @@ mod tangent;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
-pub use stability::{EigenMode, Stability, ZERO_EIGENVALUE, second_order_work};
+pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
 
 use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};

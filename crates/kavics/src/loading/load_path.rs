@@ -289,13 +289,10 @@ impl<'a> LoadPath<'a> {
     /// The stability of the present point, reached from `before`.
     fn stability(&self, before: &State) -> Option<Stability> {
         let configuration = &self.point.configuration;
-        let stability = self
-            .system
-            .stability(configuration, self.system.settings.modes);
-        Some(Stability {
-            second_order_work: second_order_work(before, &configuration.state()),
-            ..stability.ok()?
-        })
+        let modes = self.system.settings.modes;
+        let mut stability = self.system.stability(configuration, modes).ok()?;
+        stability.summary.second_order_work = second_order_work(before, &configuration.state());
+        Some(stability)
     }
 }
 

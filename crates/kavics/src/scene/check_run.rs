@@ -56,6 +56,9 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
         checker.word(word, "every", &[("step", false), ("iteration", true)])
     });
+    let modes = measure.stability.as_ref().map_or(Some(0), |count| {
+        checker.count_up_to(count, "stability", 1, MOST_MODES)
+    });
     let record = file.record.as_ref().map(|record| &record.value);
     let every = record.and_then(|record| record.every.as_ref());
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
@@ -67,6 +70,8 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     Some(RunPlan {
         settings: Settings {
             keep_iterates: keep_iterates?,
+            modes: modes?,
+            keep_tangents: measure.moduli.unwrap_or(false),
             ..settings
         },
         breakage,
@@ -149,6 +154,9 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
     };
     Some((settings, breakage?))
 }
+
+/// Modes that are sought at once.
+const MOST_MODES: i64 = 100;
 
 /// Least bound on the residual: a few roundings of double precision.
 const LEAST_TOLERANCE: f64 = 1e-14;

@@ -243,6 +243,10 @@ pub struct MeasureFile {
     pub window: Option<Placed<ValueOr<WindowFile>>>,
     /// "step" (when absent) or "iteration".
     pub every: Option<Placed<String>>,
+    /// How many of the lowest modes of the tangent are sought at each load step; none when absent.
+    pub stability: Option<Placed<i64>>,
+    /// Whether the tangent moduli of the window are measured; not when absent.
+    pub moduli: Option<bool>,
 }
 
 /// Grains of the window.
