@@ -8,6 +8,7 @@ mod general;
 mod inertia;
 mod panels;
 mod pattern;
+mod refine;
 mod sweeps;
 mod symmetric;
 
