@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::plot::{Plot, Series, draw};
 use crate::tensor::{Principal, near};
-use crate::{ReportError, packing};
+use crate::{ReportError, energy, packing};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
@@ -26,6 +26,8 @@ pub(crate) struct LegendEntry {
     pub(crate) name: String,
     pub(crate) colour: usize,
     pub(crate) dashed: bool,
+    /// An area in place of a line.
+    pub(crate) filled: bool,
 }
 
 /// Curves under one heading.
@@ -39,9 +41,9 @@ pub(crate) struct Group {
 }
 
 /// What the curves of `steps` run over: the load factor where it only rises, the load step otherwise.
-struct Abscissa {
-    label: &'static str,
-    values: Vec<f64>,
+pub(crate) struct Abscissa {
+    pub(crate) label: &'static str,
+    pub(crate) values: Vec<f64>,
 }
 
 impl Abscissa {
@@ -107,9 +109,9 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
         },
         Group {
             heading: "Energy",
-            note: "Since the start of the run. The ledger error is external work less all it went into.",
-            pairs: false,
-            figures: energies(steps, &over)?,
+            note: energy::NOTE,
+            pairs: true,
+            figures: energy::figures(steps, &over)?,
         },
     ];
     let with_figures = groups.into_iter().filter(|group| !group.figures.is_empty());
@@ -138,6 +140,7 @@ pub(crate) fn legend(series: &[Series]) -> Vec<LegendEntry> {
         name: series.name.clone(),
         colour: series.colour,
         dashed: series.dashed,
+        filled: false,
     };
     series.iter().map(entry).collect()
 }
@@ -263,28 +266,5 @@ fn fabric(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> 
             "difference of eigenvalues",
             &deviators,
         ),
-    ])
-}
-
-fn energies(steps: &Columns, over: &Abscissa) -> Result<Vec<Figure>, ReportError> {
-    let all = [
-        ("external_work", "external work", 0),
-        ("elastic_energy", "elastic", 2),
-        ("fracture_energy", "fracture", 1),
-        ("release_energy", "release", 5),
-        ("friction_work", "friction", 3),
-        ("nonpotential_work", "non-potential", 6),
-    ];
-    let mut series = Vec::new();
-    for (name, label, colour) in all {
-        let line = column(steps, over, name, label, colour)?;
-        if line.points.iter().any(|&(_, y)| y != 0.0) {
-            series.push(line);
-        }
-    }
-    let ledger = [column(steps, over, "ledger_error", "ledger error", 7)?];
-    Ok(vec![
-        figure("Work and energy", over.label, "force × length", &series),
-        figure("Ledger error", over.label, "force × length", &ledger),
     ])
 }

@@ -7,6 +7,7 @@ mod bars;
 mod compared_table;
 mod comparison;
 mod curves;
+mod energy;
 mod error;
 mod graph;
 mod number;

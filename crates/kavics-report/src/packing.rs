@@ -265,6 +265,7 @@ fn directions(contacts: &[Meeting]) -> Option<Figure> {
         name: name.to_owned(),
         colour,
         dashed,
+        filled: false,
     };
     Some(Figure {
         title: "Contact normals".to_owned(),

@@ -11,7 +11,7 @@ use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
 use crate::ResultsError;
 use crate::record::{RunRecord, RunState};
-use crate::room::{RECORDED, VOIDS};
+use crate::room::{CRACKS, RECORDED, VOIDS};
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -242,6 +242,14 @@ impl ResultsFolder {
     /// A table that cannot be read.
     pub fn sides(&self, step: usize) -> Result<Columns, ResultsError> {
         self.recorded("sides", step)
+    }
+
+    /// The table `cracks` at a recorded load step, of a scene that asks for it.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn cracks(&self, step: usize) -> Result<Columns, ResultsError> {
+        self.recorded(CRACKS, step)
     }
 
     /// The table `voids` at a recorded load step, of a scene that asks for it.

@@ -6,6 +6,7 @@
 mod actions;
 mod column;
 mod contacts;
+mod cracks;
 mod encode;
 mod error;
 mod events;
@@ -29,6 +30,7 @@ mod warning;
 pub use actions::ActionRow;
 pub use column::{Column, Unit};
 pub use contacts::ContactRow;
+pub use cracks::CrackRow;
 pub use encode::publish;
 pub use error::ResultsError;
 pub use events::EventRow;

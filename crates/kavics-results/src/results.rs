@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 use kavics::assembly::{Grain, Partner, Side};
 use kavics::equilibrium::{Equilibrium, EventKind, Iterate, Load, State};
 use kavics::ids::{BodyId, GrainId, Id, PerBody, PerGrain, SideId};
-use kavics::measure::{Measures, Snapshot, Tensor, void_cells};
+use kavics::measure::{Measures, Snapshot, Tensor, cracks, void_cells};
 use kavics::scene::Scene;
 
 use crate::ResultsError;
 use crate::actions::{ActionRow, Actions, action_columns};
 use crate::contacts::{ContactRow, contact_columns};
+use crate::cracks::{crack_columns, crack_rows};
 use crate::encode::{publish, publish_table};
 use crate::events::{EventRow, event_columns};
 use crate::folder::recorded_path;
@@ -20,7 +21,7 @@ use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
 use crate::packing_record::PackingRecord;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
-use crate::room::{RECORDED, VOIDS, make_room};
+use crate::room::{CRACKS, RECORDED, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
@@ -69,7 +70,8 @@ impl<'a> Results<'a> {
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
         let voids = scene.record_voids.then_some(VOIDS);
-        for name in RECORDED.into_iter().chain(voids) {
+        let cracks = scene.record_cracks.then_some(CRACKS);
+        for name in RECORDED.into_iter().chain(voids).chain(cracks) {
             let path = folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -260,8 +262,12 @@ impl<'a> Results<'a> {
         publish_table(&path("contacts"), &contact_columns(), &contacts)?;
         let sides = self.side_rows(equilibrium);
         publish_table(&path("sides"), &side_columns(), &sides)?;
+        let snapshot = Snapshot::new(&self.scene.assembly, equilibrium);
+        if self.scene.record_cracks {
+            let rows = crack_rows(equilibrium.step, cracks(&snapshot));
+            publish_table(&path(CRACKS), &crack_columns(), &rows)?;
+        }
         if self.scene.record_voids {
-            let snapshot = Snapshot::new(&self.scene.assembly, equilibrium);
             let rows = void_rows(equilibrium.step, &void_cells(&snapshot));
             publish_table(&path(VOIDS), &void_columns(), &rows)?;
         }

@@ -8,8 +8,12 @@ use crate::ResultsError;
 /// Folders of tables, a file a recorded load step.
 pub(crate) const RECORDED: [&str; 3] = ["grains", "contacts", "sides"];
 
-/// Folder of tables that are written when asked for.
+/// Folders of tables that are written when asked for.
+pub(crate) const ASKED_FOR: [&str; 2] = [VOIDS, CRACKS];
+/// Void cells.
 pub(crate) const VOIDS: &str = "voids";
+/// Cracks.
+pub(crate) const CRACKS: &str = "cracks";
 
 /// The other files of a run.
 const FILES: [&str; 9] = [
@@ -99,7 +103,11 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
     for entry in entries(folder)? {
         let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         let name = entry.file_name().to_string_lossy().into_owned();
-        if is_folder && (RECORDED.contains(&name.as_str()) || name == VOIDS) {
+        let is_recorded = RECORDED
+            .iter()
+            .chain(&ASKED_FOR)
+            .any(|known| *known == name);
+        if is_folder && is_recorded {
             for table in entries(&entry.path())? {
                 let name = table.file_name().to_string_lossy().into_owned();
                 take(folder, &table, is_table(&name), &mut files)?;

@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use kavics::equilibrium::Warning;
+use kavics::equilibrium::{Breakdown, Warning};
 
 /// Warnings of the load steps, each once with all its load steps.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +16,7 @@ impl SolverWarnings {
         let same = |known: &Warning| discriminant(known) == discriminant(warning);
         match self.list.iter_mut().find(|(known, _)| same(known)) {
             Some((known, steps)) => {
-                if count(warning) > count(known) {
+                if size(warning) > size(known) {
                     *known = warning.clone();
                 }
                 if steps.last() != Some(&step) {
@@ -34,7 +34,7 @@ impl SolverWarnings {
     }
 }
 
-/// What a warning of some load steps says; the count is the largest among them.
+/// What a warning of some load steps says; its number is the largest among them.
 fn warning_text(warning: &Warning, steps: &[usize]) -> String {
     let up_to = if steps.len() > 1 { "up to " } else { "" };
     let count = |word| format!("{up_to}{}", counted(count(warning), word));
@@ -45,8 +45,18 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::ShearFloor { .. } => {
             format!("shear modulus at its floor in {}", count("contact"))
         }
+        Warning::SolvedDirectly { breakdown } => {
+            let why = match breakdown {
+                Breakdown::NotPositive => "the stiffness is not positive definite",
+                Breakdown::Stagnated => "the iteration gained no more",
+            };
+            format!("solved directly instead of by iteration, as {why}")
+        }
         Warning::SecondOrderWork { .. } => {
             format!("second-order work negative in {}", count("contact"))
+        }
+        Warning::WorkError { relative } => {
+            format!("work and energies known to {up_to}{relative:.0e} of the work only")
         }
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
@@ -56,7 +66,17 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
 fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
+        Warning::SolvedDirectly { .. } => 1,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
+        Warning::WorkError { .. } => 0,
+    }
+}
+
+/// The number by which the worst of equal warnings is known.
+fn size(warning: &Warning) -> f64 {
+    match warning {
+        Warning::WorkError { relative } => *relative,
+        _ => count(warning) as f64,
     }
 }
 

@@ -177,6 +177,32 @@ fn void_cells_are_recorded_when_asked_for() {
 }
 
 #[test]
+fn cracks_are_recorded_when_asked_for() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let mut scene = block::scene(7, 5);
+    scene.record_cracks = true;
+    block::write(&folder, &scene);
+    let folder = ResultsFolder::open(&folder).unwrap();
+    assert_eq!(folder.cracks(0).unwrap().len(), 0);
+    // Every broken contact lies in one crack.
+    let cracks = folder.cracks(5).unwrap();
+    let contacts: i64 = cracks
+        .integers("contacts")
+        .unwrap()
+        .into_iter()
+        .flatten()
+        .sum();
+    let states = folder.contacts(5).unwrap();
+    let broken = states.texts("state").unwrap();
+    assert_eq!(
+        contacts as usize,
+        broken.iter().filter(|state| **state == "broken").count()
+    );
+    assert!(contacts > 0);
+}
+
+#[test]
 fn two_runs_write_the_same_bytes() {
     let place = place();
     let scene = block::scene(7, 5);

@@ -67,6 +67,7 @@ impl Run {
             "contacts" => results.contacts(step),
             "sides" => results.sides(step),
             "voids" => results.voids(step),
+            "cracks" => results.cracks(step),
             other => Columns::read(&results.path().join(format!("{other}.parquet"))),
         }
     }

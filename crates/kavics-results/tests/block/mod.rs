@@ -72,6 +72,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
         record_voids: false,
+        record_cracks: false,
         compare: None,
         warnings: vec!["0.73 of the top side carries no load: no grain is met there".to_owned()],
         text: "title = \"Block of discs, pressed from above\"\n".to_owned(),
@@ -245,6 +246,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
         load_factor: factor,
         complete: true,
         iterations: if step == 0 { 0 } else { 4 + step },
+        work_iterations: 0,
         residual: 3.1e-12 * factor,
         cuts: 0,
         state: State {

@@ -2,8 +2,8 @@
 //! Bojtár & Bagi (1989), eq. 22; friction by return mapping.
 
 use super::{
-    Cohesionless, ContactForce, ContactMemory, Dissipation, Phase, PhaseChange, Reading,
-    RelativeDisplacement, Response, Stiffness, shear,
+    Cohesionless, ContactForce, ContactInstant, ContactMemory, Dissipation, Phase, PhaseChange,
+    Reading, RelativeDisplacement, Response, Stiffness, shear,
 };
 
 /// +1 or −1 with the shear force of a sliding contact.
@@ -144,54 +144,96 @@ impl Cohesionless {
         }
     }
 
-    /// Work of friction, and of a shear spring without potential, on the straight way to `v`.
+    /// Work of friction, and of a shear spring without potential, on the straight way between two instants.
     ///
-    /// The contact sticks until its shear force meets the limit, then slides along it; where it opens on the way
-    /// it slides until nothing is left. Friction takes ½·(T_θ + T₁)·Δslip.
+    /// The shear force is that of the spring, bounded by μ_f·(−N), and nothing where N > 0. Friction takes
+    /// ½·(T₀ + T₁)·Δslip between the points where sticking, sliding and opening change.
     pub fn dissipation(
         &self,
-        v: RelativeDisplacement,
-        force: ContactForce,
+        ends: [&ContactInstant; 2],
         k: &Stiffness,
         memory: &ContactMemory,
-        phase: Phase,
     ) -> Dissipation {
-        let opens = phase == Phase::Open && memory.phase != Phase::Open;
-        let Some(friction) = self.friction else {
-            let lost = if opens {
-                shear::energy(memory.force.shear, k.shear_at(memory.displacement.normal))
-            } else {
-                0.0
-            };
-            let nonpotential = if phase == Phase::Open || memory.phase == Phase::Open {
-                lost
-            } else {
-                shear::dissipation(self.reading, v, force.shear, k, memory)
-            };
-            return Dissipation {
-                friction: 0.0,
-                nonpotential,
-            };
+        let open = ends.map(|end| end.phase == Phase::Open);
+        match self.friction {
+            _ if open == [true, true] => Dissipation::default(),
+            None if open == [false, false] => self.without_slip(ends, k, memory),
+            None => self.opening(ends, k, memory),
+            Some(_) if ends.iter().all(|end| end.phase == Phase::Closed) => {
+                self.without_slip(ends, k, memory)
+            }
+            Some(friction) => self.sliding(friction, ends, k, memory),
+        }
+    }
+
+    fn without_slip(
+        &self,
+        ends: [&ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Dissipation {
+        Dissipation {
+            friction: 0.0,
+            nonpotential: shear::dissipation(self.reading, ends, k, memory),
+        }
+    }
+
+    /// Without friction the shear force jumps to zero where the contact opens, and back where it closes.
+    fn opening(
+        &self,
+        ends: [&ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Dissipation {
+        let [from, to] = ends.map(|end| end.displacement.normal);
+        let share = if from == to { 0.0 } else { from / (from - to) };
+        let v = shear::between(ends, share.clamp(0.0, 1.0));
+        let force = ContactForce {
+            shear: shear::respond(self.reading, v, k, memory).force,
+            ..ContactForce::default()
         };
-        if phase == Phase::Closed {
-            return Dissipation {
-                friction: 0.0,
-                nonpotential: shear::dissipation(self.reading, v, force.shear, k, memory),
-            };
-        }
-        if sense(phase).is_none() && !opens {
-            return Dissipation::default();
-        }
-        // What the spring feels changes with k_t whether it slides or not: −½·∫ e² dk_t.
-        let nonpotential = if opens {
-            0.0
+        let edge = ContactInstant {
+            displacement: v,
+            force,
+            phase: Phase::Closed,
+        };
+        let lost = shear::energy(force.shear, k.shear_at(v.normal));
+        let opens = ends[1].phase == Phase::Open;
+        let (closed, lost) = if opens {
+            ([ends[0], &edge], lost)
         } else {
-            shear::dissipation(Reading::Printed, v, force.shear, k, memory)
+            ([&edge, ends[1]], -lost)
         };
         Dissipation {
-            friction: sliding_work(friction, v, force, k, memory, opens),
-            nonpotential,
+            friction: 0.0,
+            nonpotential: lost + shear::dissipation(self.reading, closed, k, memory),
         }
+    }
+
+    fn sliding(
+        &self,
+        friction: f64,
+        ends: [&ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Dissipation {
+        let way = SlidingWay::new(self.reading, friction, ends, k, memory);
+        let mut marks = way.changes();
+        marks.sort_by(f64::total_cmp);
+        let mut sum = Dissipation::default();
+        let (mut from, mut here) = (*ends[0], 0.0);
+        for mark in marks.into_iter().chain([1.0]) {
+            let to = if mark == 1.0 { *ends[1] } else { way.at(mark) };
+            let part = match way.kind(0.5 * (here + mark)) {
+                Kind::Open => Dissipation::default(),
+                Kind::Sticking => self.without_slip([&from, &to], k, memory),
+                Kind::Sliding => slipping([&from, &to], k),
+            };
+            sum.friction += part.friction;
+            sum.nonpotential += part.nonpotential;
+            (from, here) = (to, mark);
+        }
+        sum
     }
 }
 
@@ -200,42 +242,103 @@ fn felt(force: f64, stiffness: f64) -> f64 {
     if force == 0.0 { 0.0 } else { force / stiffness }
 }
 
-/// Work of friction on the straight way from the remembered equilibrium to `v`; exact at constant shear stiffness.
-fn sliding_work(
-    friction: f64,
-    v: RelativeDisplacement,
-    force: ContactForce,
-    k: &Stiffness,
-    memory: &ContactMemory,
-    opens: bool,
-) -> f64 {
-    let start = memory.displacement;
-    let stiffness = k.shear_at(start.normal);
-    let end = if opens {
-        start.normal / (start.normal - v.normal)
-    } else {
-        1.0
-    };
-    let step = v.shear - start.shear;
-    let (shear_before, limit_before) = (memory.force.shear, -friction * memory.force.normal);
-    let limit_after = if opens { 0.0 } else { -friction * force.normal };
-    let trial = shear_before + stiffness * step * end;
-    let sense = if opens {
-        trial.signum()
-    } else {
-        force.shear.signum()
-    };
-    // Where the elastic shear force meets the limit, as a share of the way to `end`.
-    let room = limit_before - sense * shear_before;
-    let closing = sense * (trial - shear_before) - (limit_after - limit_before);
-    let meets = if closing > 0.0 {
-        (room / closing).clamp(0.0, 1.0)
-    } else {
+/// A part of a way on which a contact slides. Slip that runs back against the shear force, as the spring takes it back
+/// that counts from the last equilibrium, gives work that is not friction's.
+fn slipping(ends: [&ContactInstant; 2], k: &Stiffness) -> Dissipation {
+    let [before, after] = ends.map(|end| {
+        end.displacement.shear - felt(end.force.shear, k.shear_at(end.displacement.normal))
+    });
+    let work = 0.5 * (ends[0].force.shear + ends[1].force.shear) * (after - before);
+    let spring = if k.hardening == 0.0 {
         0.0
+    } else {
+        shear::stiffening(ends, k)
     };
-    let shear_at_slip = sense * (limit_before + meets * (limit_after - limit_before));
-    let shear_after = sense * limit_after;
-    let felt_after = felt(shear_after, k.shear_at(v.normal));
-    let slip = step * end * (1.0 - meets) - (felt_after - felt(shear_at_slip, stiffness));
-    0.5 * (shear_at_slip + shear_after) * slip
+    Dissipation {
+        friction: work.max(0.0),
+        nonpotential: work.min(0.0) + spring,
+    }
+}
+
+/// How a part of a way is gone.
+enum Kind {
+    Open,
+    Sticking,
+    Sliding,
+}
+
+/// A straight way on which a contact may stick, slide and open: spring force and normal force are linear along it.
+struct SlidingWay<'a> {
+    ends: [&'a ContactInstant; 2],
+    friction: f64,
+    /// What the spring would answer without a limit.
+    spring: [f64; 2],
+    /// Normal force, tension where the contact is open.
+    normal: [f64; 2],
+}
+
+impl<'a> SlidingWay<'a> {
+    fn new(
+        reading: Reading,
+        friction: f64,
+        ends: [&'a ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Self {
+        Self {
+            ends,
+            friction,
+            spring: ends.map(|end| shear::respond(reading, end.displacement, k, memory).force),
+            normal: ends.map(|end| match end.phase {
+                Phase::Open => k.normal * end.displacement.normal,
+                _ => end.force.normal,
+            }),
+        }
+    }
+
+    /// Shares of the way at which the spring meets a limit or the contact opens or closes.
+    fn changes(&self) -> Vec<f64> {
+        let [normal, spring] = [self.normal, self.spring];
+        let limits = [-1.0, 1.0].map(|sense| {
+            [0, 1].map(|end: usize| spring[end] + sense * self.friction * normal[end])
+        });
+        let crossed = [normal, limits[0], limits[1]];
+        crossed
+            .into_iter()
+            .filter(|[from, to]| from * to < 0.0)
+            .map(|[from, to]| from / (from - to))
+            .collect()
+    }
+
+    /// Spring force and limit at a share of the way; the limit is negative where the contact is open.
+    fn spring_and_limit(&self, share: f64) -> (f64, f64) {
+        let [spring, normal] =
+            [self.spring, self.normal].map(|[from, to]| from + share * (to - from));
+        (spring, -self.friction * normal)
+    }
+
+    fn kind(&self, share: f64) -> Kind {
+        let (spring, limit) = self.spring_and_limit(share);
+        if limit < 0.0 {
+            Kind::Open
+        } else if spring.abs() <= limit {
+            Kind::Sticking
+        } else {
+            Kind::Sliding
+        }
+    }
+
+    fn at(&self, share: f64) -> ContactInstant {
+        let (spring, limit) = self.spring_and_limit(share);
+        let limit = limit.max(0.0);
+        let force = ContactForce {
+            shear: spring.clamp(-limit, limit),
+            ..ContactForce::default()
+        };
+        ContactInstant {
+            displacement: shear::between(self.ends, share),
+            force,
+            phase: Phase::Closed,
+        }
+    }
 }

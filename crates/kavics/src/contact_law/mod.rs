@@ -39,6 +39,19 @@ pub struct ContactForce {
     pub moment: f64,
 }
 
+impl ContactForce {
+    /// k·v.
+    pub fn linear(k: &Matrix, v: RelativeDisplacement) -> Self {
+        let [normal, shear, moment] =
+            k.map(|row| row[0] * v.normal + row[1] * v.shear + row[2] * v.rotation);
+        Self {
+            normal,
+            shear,
+            moment,
+        }
+    }
+}
+
 /// How a contact carries what it carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Phase {
@@ -200,6 +213,28 @@ pub struct ContactMemory {
     pub slip: f64,
     /// Relative rotation at which the contact came to be, dimensionless.
     pub rotation_origin: f64,
+}
+
+/// A contact at an instant: where it stands, what it carries and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactInstant {
+    /// Relative displacement.
+    pub displacement: RelativeDisplacement,
+    /// Force.
+    pub force: ContactForce,
+    /// How it carries.
+    pub phase: Phase,
+}
+
+impl ContactMemory {
+    /// The remembered equilibrium.
+    pub fn instant(&self) -> ContactInstant {
+        ContactInstant {
+            displacement: self.displacement,
+            force: self.force,
+            phase: self.phase,
+        }
+    }
 }
 
 /// A square matrix over the components normal, shear, rotation.
@@ -367,12 +402,27 @@ impl Law {
         memory: &ContactMemory,
         phase: Phase,
     ) -> Dissipation {
+        let now = ContactInstant {
+            displacement: v,
+            force,
+            phase,
+        };
+        self.dissipation_between([&memory.instant(), &now], k, memory)
+    }
+
+    /// Energy that went elsewhere on the straight way between two instants that share a memory.
+    pub fn dissipation_between(
+        &self,
+        ends: [&ContactInstant; 2],
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> Dissipation {
         match self {
             Self::Cemented(law) => Dissipation {
-                nonpotential: shear::dissipation(law.reading, v, force.shear, k, memory),
+                nonpotential: shear::dissipation(law.reading, ends, k, memory),
                 friction: 0.0,
             },
-            Self::Cohesionless(law) => law.dissipation(v, force, k, memory, phase),
+            Self::Cohesionless(law) => law.dissipation(ends, k, memory),
         }
     }
 }

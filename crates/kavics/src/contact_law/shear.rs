@@ -4,7 +4,7 @@
 //! same T from U = ½·k_t·e², with the thrust ∂U/∂v_n. History: dT = k_t·dv_t, and where k_t falls T falls with it,
 //! in closed form on the straight way from the last equilibrium.
 
-use super::{ContactMemory, Reading, RelativeDisplacement, Stiffness};
+use super::{ContactInstant, ContactMemory, Reading, RelativeDisplacement, Stiffness};
 
 /// The shear force and what it does to the normal force, with derivatives.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,31 +88,74 @@ pub(super) fn energy(force: f64, stiffness: f64) -> f64 {
     }
 }
 
-/// Work of the shear force less the energy kept, on the straight way from the remembered equilibrium to `v`
-/// without slip, `[force·length]`.
+/// Work of the shear force less the energy kept, on the straight way between two instants without slip,
+/// `[force·length]`; both carry what the spring answers with the same memory.
 pub(super) fn dissipation(
     reading: Reading,
-    v: RelativeDisplacement,
-    force: f64,
+    ends: [&ContactInstant; 2],
     k: &Stiffness,
     memory: &ContactMemory,
 ) -> f64 {
     if k.hardening == 0.0 {
         return 0.0;
     }
-    let (before, now) = (k.shear_at(memory.displacement.normal), k.shear_at(v.normal));
-    let felt = [memory.force.shear / before, force / now];
-    let mean_square = mean_square_above_floor(felt, [memory.displacement.normal, v.normal], k);
     match reading {
         Reading::Potential => 0.0,
-        // −½·∫ e² dk_t with e and k_t linear along the way.
-        Reading::Printed => -0.5 * (now - before) * mean_square,
-        Reading::History if now < before => 0.5 * (before - now) * mean_square,
-        Reading::History => {
-            let step = v.shear - memory.displacement.shear;
-            let work = step * (memory.force.shear + step * (before / 2.0 + (now - before) / 6.0));
-            work - energy(force, now) + energy(memory.force.shear, before)
-        }
+        Reading::Printed => stiffening(ends, k),
+        Reading::History => remembered(ends, k, memory),
+    }
+}
+
+/// −½·∫ e² dk_t with e and k_t linear along the way: what a spring takes whose stiffness falls while it feels e.
+pub(super) fn stiffening(ends: [&ContactInstant; 2], k: &Stiffness) -> f64 {
+    let [before, now] = ends.map(|end| k.shear_at(end.displacement.normal));
+    let felt = [ends[0].force.shear / before, ends[1].force.shear / now];
+    let opening = ends.map(|end| end.displacement.normal);
+    -0.5 * (now - before) * mean_square_above_floor(felt, opening, k)
+}
+
+/// The history reading: where k_t is above that of the memory T is of second order in it, below it is k_t·e.
+fn remembered(ends: [&ContactInstant; 2], k: &Stiffness, memory: &ContactMemory) -> f64 {
+    let start = k.shear_at(memory.displacement.normal);
+    let above = ends.map(|end| k.shear_at(end.displacement.normal) - start);
+    if above[0] >= 0.0 && above[1] >= 0.0 {
+        return rising(ends, k, memory);
+    }
+    if above[0] <= 0.0 && above[1] <= 0.0 {
+        return stiffening(ends, k);
+    }
+    let v = between(ends, above[0] / (above[0] - above[1]));
+    let mut crossing = ContactInstant {
+        displacement: v,
+        ..*ends[0]
+    };
+    crossing.force.shear = history(v, k, memory).force;
+    let (first, second) = ([ends[0], &crossing], [&crossing, ends[1]]);
+    if above[0] > 0.0 {
+        rising(first, k, memory) + stiffening(second, k)
+    } else {
+        stiffening(first, k) + rising(second, k, memory)
+    }
+}
+
+/// ∫ T dv_t less the energy kept, with T = T_m + ½·(k_m + k_t)·(v_t − v_m) from the memory m: Simpson's rule is exact.
+fn rising(ends: [&ContactInstant; 2], k: &Stiffness, memory: &ContactMemory) -> f64 {
+    let [from, to] = ends;
+    let middle = history(between(ends, 0.5), k, memory).force;
+    let step = to.displacement.shear - from.displacement.shear;
+    let work = step / 6.0 * (from.force.shear + 4.0 * middle + to.force.shear);
+    let [before, now] =
+        ends.map(|end| energy(end.force.shear, k.shear_at(end.displacement.normal)));
+    work - now + before
+}
+
+/// The relative displacement at a share of the straight way.
+pub(super) fn between(ends: [&ContactInstant; 2], share: f64) -> RelativeDisplacement {
+    let [from, to] = ends.map(|end| end.displacement);
+    RelativeDisplacement {
+        normal: from.normal + share * (to.normal - from.normal),
+        shear: from.shear + share * (to.shear - from.shear),
+        rotation: from.rotation + share * (to.rotation - from.rotation),
     }
 }
 

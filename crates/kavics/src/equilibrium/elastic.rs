@@ -6,6 +6,7 @@
 use super::Displacement;
 use super::configuration::Configuration;
 use super::kinematics::{ALL_FREEDOMS, Block, FREEDOMS};
+use super::sparsity::Sparsity;
 use super::system::System;
 use super::{Iteration, Load};
 use crate::contact_law::ContactForce;
@@ -29,10 +30,21 @@ impl System<'_> {
         if self.unknowns() == 0 {
             return Ok(0);
         }
-        self.make_symmetric_solver()?;
-        let values = self.values(configuration, Iteration::Secant, 0.0, &self.lower);
+        let lower = self.take_lower();
+        let held = self.factorise_lower(&lower, configuration);
+        self.lower = Some(lower);
+        held
+    }
+
+    fn factorise_lower(
+        &mut self,
+        lower: &Sparsity,
+        configuration: &Configuration,
+    ) -> Result<usize, Singular> {
+        self.make_symmetric_solver(lower)?;
+        let values = self.values(configuration, Iteration::Secant, 0.0, lower);
         let solver = self.symmetric.as_mut().ok_or(Singular)?;
-        Ok(solver.factorise(&self.lower.pattern, &values)?.held)
+        Ok(solver.factorise(&lower.pattern, &values)?.held)
     }
 
     /// Answers to two sets of loads, by unknown.

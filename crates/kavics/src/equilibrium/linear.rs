@@ -6,7 +6,7 @@ use super::configuration::{Configuration, Progress};
 use super::sparsity::{Sparsity, Stored};
 use super::system::System;
 use crate::ids::{Id, PerBody};
-use crate::solver::{GeneralSolver, Singular, SymmetricSolver, minimum_degree};
+use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
 
 /// From this many unknowns on, a factor is kept until the iteration drops it.
 const LARGE: usize = 10_000;
@@ -35,6 +35,14 @@ impl System<'_> {
             return Ok(right);
         }
         let general = iteration == Iteration::Tangent && self.is_unsymmetric(configuration);
+        // A proximal step is asked for where the matrix is singular or nearly so.
+        if proximal == 0.0 && self.iterates() {
+            progress.held_pivots = 0;
+            match self.solve_by_iteration(configuration, iteration, general, &mut right) {
+                Ok(()) => return Ok(right),
+                Err(breakdown) => self.breakdown = Some(breakdown),
+            }
+        }
         let solved = if general {
             self.solve_general(configuration, proximal, &mut right)
         } else {
@@ -63,15 +71,37 @@ impl System<'_> {
         right: &mut [f64],
         progress: &mut Progress,
     ) -> Result<(), Singular> {
-        self.make_symmetric_solver()?;
+        let lower = self.take_lower();
+        let solved =
+            self.solve_by_factor(&lower, configuration, iteration, proximal, right, progress);
+        self.lower = Some(lower);
+        solved
+    }
+
+    /// The pattern of the lower triangle, to be given back.
+    pub(super) fn take_lower(&mut self) -> Sparsity {
+        let lower = self.lower.take();
+        lower.unwrap_or_else(|| Sparsity::new(&self.numbers, &self.frames, Stored::Lower))
+    }
+
+    fn solve_by_factor(
+        &mut self,
+        lower: &Sparsity,
+        configuration: &Configuration,
+        iteration: Iteration,
+        proximal: f64,
+        right: &mut [f64],
+        progress: &mut Progress,
+    ) -> Result<(), Singular> {
+        self.make_symmetric_solver(lower)?;
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
-            let values = self.values(configuration, iteration, proximal, &self.lower);
+            let values = self.values(configuration, iteration, proximal, lower);
             if self.factored.as_ref().is_none_or(|(old, _)| *old != values) {
                 let solver = self.symmetric.as_mut().ok_or(Singular)?;
                 // A factorisation that fails leaves no factor behind.
                 self.factored = None;
-                let inertia = solver.factorise(&self.lower.pattern, &values)?;
+                let inertia = solver.factorise(&lower.pattern, &values)?;
                 self.factored = Some((values, inertia));
             }
         }
@@ -87,10 +117,10 @@ impl System<'_> {
     }
 
     /// The pattern analysed, once.
-    pub(super) fn make_symmetric_solver(&mut self) -> Result<(), Singular> {
+    pub(super) fn make_symmetric_solver(&mut self, lower: &Sparsity) -> Result<(), Singular> {
         if self.symmetric.is_none() {
-            let order = minimum_degree(&self.lower.pattern)?;
-            self.symmetric = Some(SymmetricSolver::new(&self.lower.pattern, &order)?);
+            let order = self.order_of_elimination();
+            self.symmetric = Some(SymmetricSolver::new(&lower.pattern, &order)?);
         }
         Ok(())
     }

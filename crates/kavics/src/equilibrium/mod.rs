@@ -3,21 +3,27 @@
 //! In: an assembly, contact states, loads and prescribed displacements. Out: displacements and contact forces.
 
 mod balance;
+mod block_stiffness;
 pub(crate) mod bond;
 pub(crate) mod configuration;
 pub(crate) mod elastic;
+mod elimination;
 mod error;
+mod iterative;
 mod kinematics;
 mod linear;
-mod pieces;
 mod search;
 mod sparsity;
+mod stability;
 pub(crate) mod system;
+mod tangent;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
+pub use stability::{EigenMode, Stability, ZERO_EIGENVALUE, second_order_work};
+pub use tangent::relax;
 
-use crate::contact_law::{ContactForce, Mode, Phase, RelativeDisplacement};
+use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};
 
 /// Displacement of a grain or side.
@@ -63,6 +69,18 @@ pub enum Iteration {
     Tangent,
 }
 
+/// How linear systems are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SolverChoice {
+    /// By iteration where there are many unknowns, else directly.
+    #[default]
+    Auto,
+    /// By a factor: LDLᵀ, or LU where the tangent is not symmetric.
+    Direct,
+    /// By conjugate gradients with multigrid; by their stabilised biconjugate form where the tangent is not symmetric.
+    Iterative,
+}
+
 /// How equilibria are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -70,10 +88,18 @@ pub struct Settings {
     pub tolerance: f64,
     /// Which stiffness the iteration uses.
     pub iteration: Iteration,
+    /// How linear systems are solved.
+    pub solver: SolverChoice,
     /// Relative difference of utilisations below which contacts break together.
     pub tie_tolerance: f64,
+    /// Bound on the error of work and energies in a load step, relative to the work in it.
+    pub work_tolerance: f64,
     /// Whether the iterates are kept beside the equilibria.
     pub keep_iterates: bool,
+    /// How many of the lowest modes of the tangent come with each equilibrium; with 0 its stability is not sought.
+    pub modes: usize,
+    /// Whether the tangents of the contacts come with each equilibrium.
+    pub keep_tangents: bool,
 }
 
 impl Default for Settings {
@@ -81,8 +107,12 @@ impl Default for Settings {
         Self {
             tolerance: 1e-10,
             iteration: Iteration::Secant,
+            solver: SolverChoice::Auto,
             tie_tolerance: 1e-9,
+            work_tolerance: 1e-6,
             keep_iterates: false,
+            modes: 0,
+            keep_tangents: false,
         }
     }
 }
@@ -178,7 +208,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// External work less all it went into: zero but for the straight lines between equilibria.
+    /// External work less all it went into: rounding where stiffness is constant, else within the tolerance of work.
     pub fn ledger_error(&self) -> f64 {
         self.external_work
             - self.elastic_energy
@@ -200,6 +230,15 @@ pub struct Iterate {
     pub state: State,
 }
 
+/// Why linear systems are no more solved by iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breakdown {
+    /// The stiffness is not positive definite.
+    NotPositive,
+    /// The iteration gains no more.
+    Stagnated,
+}
+
 /// Something that makes a result less than it seems, though the run goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -213,10 +252,20 @@ pub enum Warning {
         /// In how many contacts.
         contacts: usize,
     },
+    /// The solver that iterates failed: systems are solved directly from here on.
+    SolvedDirectly {
+        /// Why.
+        breakdown: Breakdown,
+    },
     /// Symmetric second-order work of a contact turned negative.
     SecondOrderWork {
         /// In how many contacts.
         contacts: usize,
+    },
+    /// Work and energies are not known to the wanted tolerance.
+    WorkError {
+        /// Estimate of the error over the work of the load step.
+        relative: f64,
     },
 }
 
@@ -231,8 +280,10 @@ pub struct Equilibrium {
     pub load_factor: f64,
     /// False: the last equilibrium of a load step that could not be finished.
     pub complete: bool,
-    /// Linear solves in this step.
+    /// Linear solves in this step, those for the work apart.
     pub iterations: usize,
+    /// Linear solves for the work between equilibria, where stiffness depends on the state.
+    pub work_iterations: usize,
     /// Largest unbalanced force over largest contact force.
     pub residual: f64,
     /// How often the step was halved.
@@ -253,4 +304,8 @@ pub struct Equilibrium {
     pub warnings: Vec<Warning>,
     /// The way to it, when asked for.
     pub iterates: Vec<Iterate>,
+    /// Its stability, when asked for; none before loading, and where the modes were not found.
+    pub stability: Option<Stability>,
+    /// ∂Q/∂v of each contact, rows normal, shear, moment, columns opening, shear, rotation, when asked for.
+    pub tangents: Option<PerContact<Matrix>>,
 }

@@ -2,12 +2,13 @@
 
 use super::bond::Bond;
 use super::configuration::Configuration;
+use super::iterative::Iterating;
 use super::kinematics::{ALL_FREEDOMS, ContactFrame};
-use super::pieces::Pieces;
-use super::sparsity::{Numbers, Sparsity, Stored};
-use super::{Freedom, Iteration, Load, Settings};
+use super::sparsity::{Numbers, Sparsity};
+use super::{Breakdown, Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
+use crate::geometry::Pieces;
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
 use crate::solver::{GeneralSolver, Inertia, SymmetricSolver};
 
@@ -20,10 +21,14 @@ pub struct System<'a> {
     pub(super) numbers: Vec<Numbers>,
     /// Bodies with a held or moved freedom.
     pub anchored: Vec<bool>,
-    pub(super) lower: Sparsity,
+    unknowns: usize,
+    pub(super) lower: Option<Sparsity>,
     pub(super) full: Option<Sparsity>,
     pub(super) symmetric: Option<SymmetricSolver>,
     pub(super) general: Option<GeneralSolver>,
+    pub(super) iterating: Option<Iterating>,
+    /// Why systems are solved directly though they were to be solved by iteration.
+    pub breakdown: Option<Breakdown>,
     /// Values that the symmetric factor belongs to, and the signs of its pivots.
     pub(super) factored: Option<(Vec<f64>, Inertia)>,
     /// Bodies left out: nothing holds and nothing loads their piece.
@@ -75,7 +80,7 @@ impl<'a> System<'a> {
         for &(body, freedom) in bound {
             free[body.index()][freedom.index()] = false;
         }
-        let mut next = 0;
+        let mut next = 0u32;
         let numbers: Vec<Numbers> = free
             .iter()
             .map(|body| {
@@ -87,7 +92,6 @@ impl<'a> System<'a> {
                 })
             })
             .collect();
-        let lower = Sparsity::new(&numbers, &frames, Stored::Lower);
         Self {
             assembly,
             properties,
@@ -99,10 +103,13 @@ impl<'a> System<'a> {
             set_aside: vec![false; assembly.body_count()],
             frames,
             numbers,
-            lower,
+            unknowns: next as usize,
+            lower: None,
             full: None,
             symmetric: None,
             general: None,
+            iterating: None,
+            breakdown: None,
             factored: None,
             largest_force: 0.0,
             moved_force: 0.0,
@@ -111,7 +118,12 @@ impl<'a> System<'a> {
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
-        self.lower.pattern.order()
+        self.unknowns
+    }
+
+    /// Numbers of the unknowns of a body.
+    pub(super) fn numbers(&self, body: BodyId) -> Numbers {
+        self.numbers[body.index()]
     }
 
     /// Whether a freedom is held or moved.
@@ -139,7 +151,8 @@ impl<'a> System<'a> {
             touched[frame.first.index()] = true;
             touched[frame.second.index()] = true;
         }
-        let pieces = Pieces::new(self.assembly.body_count(), active.into_iter());
+        let edges = active.iter().map(|frame| [frame.first.0, frame.second.0]);
+        let pieces = Pieces::new(self.assembly.body_count(), edges);
         let wanted = pieces.any(|body| {
             let load = loads.values()[body];
             let pushed = self.at_free_freedoms(BodyId::from_index(body), load) != Load::default();

@@ -1,8 +1,9 @@
 //! From one equilibrium to the next along the load path, bonds breaking on the way.
 
 use super::ledger::{self, Forces};
+use super::work::{self, Account, Stretch, Vanishing};
 use super::{Breakage, Program};
-use crate::contact_law::{Mode, Phase};
+use crate::contact_law::{ContactForce, Mode, Phase};
 use crate::equilibrium::bond::Bond;
 use crate::equilibrium::configuration::{Action, Configuration, Failure, Progress};
 use crate::equilibrium::system::System;
@@ -37,6 +38,8 @@ pub struct Way {
     pub warnings: Vec<Warning>,
     /// Linear solves and iterates.
     pub progress: Progress,
+    /// What the work has cost where stiffness depends on the state.
+    pub account: Account,
 }
 
 /// A bond that breaks.
@@ -76,14 +79,7 @@ pub fn advance(
     way: &mut Way,
 ) -> Result<Point, Failure> {
     let action = action(program, factors, system.assembly.body_count());
-    let mut here = equilibrium(
-        system,
-        point,
-        point.configuration.clone(),
-        &action,
-        load_factor,
-        way,
-    )?;
+    let (mut here, _) = equilibrium(system, point, &[], &action, load_factor, way)?;
     loop {
         let broken = over_limit(&here, system.settings.tie_tolerance, breakage);
         if broken.is_empty() {
@@ -96,15 +92,16 @@ pub fn advance(
     Ok(here)
 }
 
-/// The equilibrium under `action`, reached from `configuration`; `before` is the last one.
+/// The equilibrium under `action`, reached from `before` while some forces vanish, and what each of these sets free.
 pub(super) fn equilibrium(
     system: &mut System<'_>,
     before: &Point,
-    mut configuration: Configuration,
+    vanishing: &[Vanishing],
     action: &Action,
     load_factor: f64,
     way: &mut Way,
-) -> Result<Point, Failure> {
+) -> Result<(Point, Vec<f64>), Failure> {
+    let mut configuration = before.configuration.clone();
     system.equilibrate(&mut configuration, action, &mut way.progress)?;
     let imbalance = system.imbalance(&configuration, &action.loads);
     system.largest_force = system.largest_force.max(imbalance.force);
@@ -112,13 +109,14 @@ pub(super) fn equilibrium(
         loads: action.loads.clone(),
         reactions: reactions(system, &imbalance.unbalanced),
     };
+    let stretch = Stretch {
+        before: (&before.configuration, &before.forces),
+        after: (&configuration, &forces),
+        action,
+        vanishing,
+    };
     let mut energy = before.energy;
-    ledger::add_way(
-        &mut energy,
-        (&before.configuration, &before.forces),
-        (&configuration, &forces),
-        system.properties,
-    );
+    let released = add_work(system, &mut energy, &stretch, &mut way.account);
     let set_aside = system.loose_grains();
     let iteration = way.progress.iterations;
     let happened = phase_events(&before.configuration, &configuration)
@@ -134,18 +132,48 @@ pub(super) fn equilibrium(
         bond.remember(system.properties);
     }
     let factors = before.factors.clone();
-    Ok(Point {
+    let point = Point {
         configuration,
         forces,
         energy,
         factors,
         set_aside,
         residual: way.progress.residual,
-    })
+    };
+    Ok((point, released))
+}
+
+/// Adds the work on a way, by straight lines where all stiffness is constant; answers what vanishing forces set free.
+fn add_work(
+    system: &mut System<'_>,
+    energy: &mut Energy,
+    stretch: &Stretch<'_>,
+    account: &mut Account,
+) -> Vec<f64> {
+    let after = stretch.after.0;
+    let released = if work::depends_on_state(system, after) {
+        let work = work::along(system, stretch, account);
+        energy.external_work += work.external;
+        energy.friction_work += work.friction;
+        energy.nonpotential_work += work.nonpotential;
+        energy.elastic_energy = ledger::elastic_energy(after, system.properties);
+        work.released
+    } else {
+        ledger::add_way(energy, stretch.before, stretch.after, system.properties);
+        let freed = |vanishing: &Vanishing| {
+            let v = after.bonds[vanishing.contact].displacement;
+            ledger::release_energy(vanishing.force, vanishing.from, v)
+        };
+        stretch.vanishing.iter().map(freed).collect()
+    };
+    for freed in &released {
+        energy.release_energy += freed;
+    }
+    released
 }
 
 /// What bound freedoms need so that nothing stays unbalanced.
-pub(super) fn reactions(system: &System<'_>, unbalanced: &PerBody<Load>) -> PerBody<Load> {
+pub fn reactions(system: &System<'_>, unbalanced: &PerBody<Load>) -> PerBody<Load> {
     unbalanced
         .ids()
         .map(|body| {
@@ -246,14 +274,21 @@ pub(super) fn break_bonds(
     let mut start = point.clone();
     let bonds = &mut start.configuration.bonds;
     let first_event = way.events.len();
+    let mut vanishing = Vec::with_capacity(broken.len());
     for Break { contact, mode } in broken {
         let bond = &mut bonds[*contact];
+        let (force, from) = (bond.force, bond.displacement);
         let held = bond.energy(system.properties);
         bond.break_into_successor(
             &system.assembly.contacts[*contact],
             system.properties,
             system.assembly.thickness,
         );
+        vanishing.push(Vanishing {
+            contact: *contact,
+            force: difference(force, bond.force),
+            from,
+        });
         let fracture_energy = held - bond.energy(system.properties);
         start.energy.fracture_energy += fracture_energy;
         let kind = EventKind::Broke {
@@ -269,28 +304,21 @@ pub(super) fn break_bonds(
             avalanche: None,
         });
     }
-    let mut next = equilibrium(
-        system,
-        &start,
-        start.configuration.clone(),
-        action,
-        load_factor,
-        way,
-    )?;
-    for (Break { contact, .. }, event) in broken.iter().zip(&mut way.events[first_event..]) {
-        let bonds = [
-            &point.configuration,
-            &start.configuration,
-            &next.configuration,
-        ]
-        .map(|c| &c.bonds[*contact]);
-        let released = ledger::release_energy(bonds[0], bonds[1], bonds[2]);
-        next.energy.release_energy += released;
+    let (next, released) = equilibrium(system, &start, &vanishing, action, load_factor, way)?;
+    for (released, event) in released.into_iter().zip(&mut way.events[first_event..]) {
         if let EventKind::Broke { release_energy, .. } = &mut event.kind {
             *release_energy = released;
         }
     }
     Ok(next)
+}
+
+fn difference(a: ContactForce, b: ContactForce) -> ContactForce {
+    ContactForce {
+        normal: a.normal - b.normal,
+        shear: a.shear - b.shear,
+        moment: a.moment - b.moment,
+    }
 }
 
 /// Refuses an equilibrium with a contact whose shear stiffness is lost; warns of what makes it less than it seems.
@@ -326,6 +354,13 @@ pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result
         .filter(|(count, _)| *count > 0)
         .map(|(_, warning)| warning)
         .collect();
+    let relative = way.account.relative_error();
+    if relative > system.settings.work_tolerance {
+        way.warnings.push(Warning::WorkError { relative });
+    }
+    let direct = system.breakdown;
+    way.warnings
+        .extend(direct.map(|breakdown| Warning::SolvedDirectly { breakdown }));
     Ok(())
 }
 

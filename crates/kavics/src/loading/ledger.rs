@@ -1,9 +1,8 @@
 //! Work and energy between two equilibria. No term is a remainder of the others.
 
-use crate::contact_law::{Dissipation, Property};
-use crate::equilibrium::bond::Bond;
+use crate::contact_law::{ContactForce, Dissipation, Property, RelativeDisplacement};
 use crate::equilibrium::configuration::Configuration;
-use crate::equilibrium::{Energy, Load};
+use crate::equilibrium::{Displacement, Energy, Load};
 use crate::ids::{PerBody, PerProperty};
 
 /// External loads and reactions at an equilibrium.
@@ -20,8 +19,11 @@ pub struct Forces {
 /// ```math
 /// W = \sum_p \tfrac12 (f_0 + R_0 + f_1 + R_1)\cdot(u_1 - u_0)
 /// ```
-pub fn external_work(before: (&Configuration, &Forces), after: (&Configuration, &Forces)) -> f64 {
-    let (from, to) = (&before.0.displacements, &after.0.displacements);
+pub fn external_work(
+    before: (&PerBody<Displacement>, &Forces),
+    after: (&PerBody<Displacement>, &Forces),
+) -> f64 {
+    let (from, to) = (before.0, after.0);
     let mut work = 0.0;
     for body in from.ids() {
         let step = to[body] - from[body];
@@ -66,15 +68,17 @@ pub fn dissipation(
 
 /// Energy set free at fixed loads by a bond beyond its own: the force that vanished, ΔQ, works on the way of its
 /// contact to the next equilibrium, ½·ΔQ·(v′ − v), `[force·length]`.
-pub fn release_energy(before: &Bond, broken: &Bond, after: &Bond) -> f64 {
-    let (q, rest) = (before.force, broken.force);
-    let (v, next) = (before.displacement, after.displacement);
-    0.5 * ((q.normal - rest.normal) * (next.normal - v.normal)
-        + (q.shear - rest.shear) * (next.shear - v.shear)
-        + (q.moment - rest.moment) * (next.rotation - v.rotation))
+pub fn release_energy(
+    vanished: ContactForce,
+    from: RelativeDisplacement,
+    to: RelativeDisplacement,
+) -> f64 {
+    0.5 * (vanished.normal * (to.normal - from.normal)
+        + vanished.shear * (to.shear - from.shear)
+        + vanished.moment * (to.rotation - from.rotation))
 }
 
-/// Adds the way from one equilibrium to the next, breakage apart.
+/// Adds the straight way from one equilibrium to the next, breakage apart: exact where stiffness is constant.
 pub fn add_way(
     energy: &mut Energy,
     before: (&Configuration, &Forces),
@@ -82,7 +86,10 @@ pub fn add_way(
     properties: &PerProperty<Property>,
 ) {
     let dissipation = dissipation(after.0, properties);
-    energy.external_work += external_work(before, after);
+    energy.external_work += external_work(
+        (&before.0.displacements, before.1),
+        (&after.0.displacements, after.1),
+    );
     energy.friction_work += dissipation.friction;
     energy.nonpotential_work += dissipation.nonpotential;
     energy.elastic_energy = elastic_energy(after.0, properties);

@@ -9,7 +9,9 @@ use crate::assembly::Assembly;
 use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
-use crate::equilibrium::{Equilibrium, Iteration, Settings, SolveError};
+use crate::equilibrium::{
+    Equilibrium, Iteration, Settings, SolveError, Stability, State, second_order_work,
+};
 use crate::ids::PerProperty;
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
@@ -139,6 +141,7 @@ impl<'a> LoadPath<'a> {
     /// Finishes a load step, in parts where it does not go in one.
     fn take(&mut self, load_step: &LoadStep) {
         self.step += 1;
+        let before = self.wants_modes().then(|| self.point.configuration.state());
         let mut way = Way::default();
         let (mut done, mut part, mut cuts) = (0.0, 1.0, 0);
         let failure: Option<Failure> = loop {
@@ -161,7 +164,9 @@ impl<'a> LoadPath<'a> {
         let reached = if complete { 1.0 } else { done };
         let load_factor = load_step.load_factor(reached);
         if reached > 0.0 {
-            let equilibrium = self.equilibrium(load_step.stage, load_factor, complete, cuts, way);
+            let mut equilibrium =
+                self.equilibrium(load_step.stage, load_factor, complete, cuts, way);
+            equilibrium.stability = before.and_then(|before| self.stability(&before));
             self.waiting.push_back(Ok(equilibrium));
         }
         self.end_with(failure, load_factor);
@@ -240,6 +245,7 @@ impl<'a> LoadPath<'a> {
             }
             Err(failure) => {
                 way.progress.iterations = tried.progress.iterations;
+                way.account.iterations = tried.account.iterations;
                 Err(failure)
             }
         }
@@ -259,6 +265,7 @@ impl<'a> LoadPath<'a> {
             load_factor,
             complete,
             iterations: way.progress.iterations,
+            work_iterations: way.account.iterations,
             residual: self.point.residual,
             cuts,
             state: self.point.configuration.state(),
@@ -269,7 +276,26 @@ impl<'a> LoadPath<'a> {
             events: way.events,
             warnings: way.warnings,
             iterates: way.progress.iterates,
+            stability: None,
+            tangents: (self.system.settings.keep_tangents)
+                .then(|| self.system.contact_tangents(&self.point.configuration)),
         }
+    }
+
+    fn wants_modes(&self) -> bool {
+        self.system.settings.modes > 0
+    }
+
+    /// The stability of the present point, reached from `before`.
+    fn stability(&self, before: &State) -> Option<Stability> {
+        let configuration = &self.point.configuration;
+        let stability = self
+            .system
+            .stability(configuration, self.system.settings.modes);
+        Some(Stability {
+            second_order_work: second_order_work(before, &configuration.state()),
+            ..stability.ok()?
+        })
     }
 }
 

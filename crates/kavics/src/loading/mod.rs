@@ -7,6 +7,8 @@ mod event_driven;
 mod ledger;
 mod load_path;
 mod program;
+mod refinement;
+mod work;
 
 pub use load_path::LoadPath;
 pub use program::{Action, AppliedLoad, Breakage, Held, Prescribed, Program, Stage};

@@ -8,11 +8,14 @@
 
 mod angle;
 mod coordination;
+mod cracks;
+mod elasticity;
 mod enclosure;
 mod fabric;
 mod face_walk;
 mod graph_porosity;
 mod half_contact;
+mod moduli;
 mod rose;
 mod rows;
 mod strain;
@@ -23,10 +26,13 @@ mod window;
 mod work;
 
 pub use coordination::Coordination;
+pub use cracks::{Crack, cracks};
+pub use elasticity::ElasticityTensor;
 pub use fabric::{
     branch_tensor, contact_tensor, fabric_length_tensor, fabric_of_normals, fabric_tensor,
 };
 pub use graph_porosity::{GraphPorosity, graph_porosity};
+pub use moduli::{Moduli, inside, moduli, uniform_strains};
 pub use rose::{Rose, first_harmonic};
 pub use strain::strain;
 pub use stress::{
@@ -131,6 +137,8 @@ pub struct Measures {
     pub macroscopic_work: Option<f64>,
     /// Hill's boundary term: contact work less macroscopic work, from the forces on the window's grains, `[force·length]`.
     pub boundary_work: Option<f64>,
+    /// Tangent moduli; [`measures`] leaves them out, as they need the tangents of the contacts: see [`moduli`].
+    pub moduli: Option<Moduli>,
 }
 
 /// Every measure of a window at a state.

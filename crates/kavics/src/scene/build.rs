@@ -173,6 +173,7 @@ fn build(
         window,
         record_every: plan.run.record_every,
         record_voids: plan.run.record_voids,
+        record_cracks: plan.run.record_cracks,
         compare: plan.run.compare,
         warnings: Vec::new(),
         text: String::new(),

@@ -9,7 +9,7 @@ use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
 use super::named_file::named_file;
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity, ValueOr};
-use crate::equilibrium::{Iteration, Settings};
+use crate::equilibrium::{Iteration, Settings, SolverChoice};
 use crate::loading::Breakage;
 
 /// How a scene is solved, measured and recorded.
@@ -25,6 +25,8 @@ pub struct RunPlan {
     pub record_every: usize,
     /// Whether void cells are recorded with them.
     pub record_voids: bool,
+    /// Whether cracks are recorded with them.
+    pub record_cracks: bool,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
 }
@@ -71,6 +73,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
         window: window?,
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
+        record_cracks: record.and_then(|record| record.cracks).unwrap_or(false),
         compare: compare?,
     })
 }
@@ -87,6 +90,14 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         "tie_tolerance",
         number,
         Bound::NonNegative,
+    );
+    let work = file.work_tolerance.as_ref();
+    let work = checker.number_or(
+        default.work_tolerance,
+        work,
+        "work_tolerance",
+        number,
+        Bound::Positive,
     );
     let iteration = file
         .iteration
@@ -111,22 +122,29 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         checker.refuse(&word.span, &format!("`{key} = \"{}\"`", word.value));
         None
     };
-    let solvers = [("auto", true), ("direct", true), ("iterative", false)];
+    let solver = file.solver.as_ref().map_or(Some(default.solver), |word| {
+        let choices = [
+            ("auto", SolverChoice::Auto),
+            ("direct", SolverChoice::Direct),
+            ("iterative", SolverChoice::Iterative),
+        ];
+        checker.word(word, "solver", &choices)
+    });
     let controls = [
         ("load", true),
         ("displacement", false),
         ("dissipation", false),
         ("auto", false),
     ];
-    let solver = available(&file.solver, "solver", &solvers, checker);
     let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
-    solver?;
     control?;
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,
+        solver: solver?,
         tie_tolerance: ties?,
+        work_tolerance: work?,
         ..default
     };
     Some((settings, breakage?))

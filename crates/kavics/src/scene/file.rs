@@ -226,6 +226,8 @@ pub struct EquilibriumFile {
     pub breakage: Option<Placed<String>>,
     /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
     pub tie_tolerance: Option<Number>,
+    /// Bound on the error of work and energies in a load step, relative to its work; 1e-6 when absent.
+    pub work_tolerance: Option<Number>,
     /// "auto" (when absent) or "direct".
     pub solver: Option<Placed<String>>,
     /// "load".
@@ -270,6 +272,8 @@ pub struct RecordFile {
     pub every: Option<Placed<i64>>,
     /// Whether the void cells of these load steps are recorded too; not when absent.
     pub voids: Option<bool>,
+    /// Whether the cracks of these load steps are recorded too; not when absent.
+    pub cracks: Option<bool>,
 }
 
 /// Table to set beside the run.

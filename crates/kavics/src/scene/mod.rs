@@ -73,6 +73,8 @@ pub struct Scene {
     pub record_every: usize,
     /// Whether void cells are recorded with them.
     pub record_voids: bool,
+    /// Whether cracks are recorded with them.
+    pub record_cracks: bool,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
     /// What the user should know before the run.

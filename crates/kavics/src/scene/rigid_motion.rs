@@ -7,7 +7,7 @@ use super::diagnostic::{Problem, short};
 use super::sides::side_called;
 use crate::assembly::{Assembly, Partner};
 use crate::equilibrium::{Freedom, Load};
-use crate::geometry::Vector;
+use crate::geometry::{Pieces, Vector};
 use crate::ids::{BodyId, GrainId, Id};
 use crate::loading::Program;
 
@@ -145,36 +145,22 @@ fn leaves_motion(motion: &str, grains: &[GrainId], place: &Range<usize>, checker
     );
 }
 
-fn root(parents: &mut [usize], mut body: usize) -> usize {
-    while parents[body] != body {
-        parents[body] = parents[parents[body]];
-        body = parents[body];
-    }
-    body
-}
-
 fn pieces(assembly: &Assembly, program: &Program) -> Vec<Piece> {
-    let mut parents: Vec<usize> = (0..assembly.body_count()).collect();
-    for contact in assembly.contacts.values() {
-        let first = root(&mut parents, assembly.body(contact.first).index());
-        let second = root(&mut parents, assembly.body(contact.second).index());
-        // The lowest body names the piece, whatever the order.
-        parents[first.max(second)] = first.min(second);
-    }
-    let roots: Vec<usize> = (0..parents.len())
-        .map(|body| root(&mut parents, body))
-        .collect();
-    let mut pieces = vec![Piece::default(); parents.len()];
-    for (body, root) in roots.iter().enumerate() {
-        pieces[*root].bodies.push(BodyId::from_index(body));
+    let count = assembly.body_count();
+    let contacts = assembly.contacts.values().iter();
+    let edges = contacts.map(|c| [assembly.body(c.first).0, assembly.body(c.second).0]);
+    let tied = Pieces::new(count, edges);
+    let mut pieces = vec![Piece::default(); count];
+    for body in 0..count {
+        pieces[tied.of(body)].bodies.push(BodyId::from_index(body));
     }
     let held = program.held.iter().map(|held| (held.body, held.freedom));
     let moved = program.prescribed.iter().map(|p| (p.body, p.freedom));
     for (body, freedom) in held.chain(moved) {
-        pieces[roots[body.index()]].fixed.push((body, freedom));
+        pieces[tied.of(body.index())].fixed.push((body, freedom));
     }
     for load in &program.loads {
-        pieces[roots[load.body.index()]].loaded |= load.load != Load::default();
+        pieces[tied.of(load.body.index())].loaded |= load.load != Load::default();
     }
     pieces.retain(|piece| !piece.bodies.is_empty());
     pieces

@@ -9,7 +9,7 @@ use super::acting::{self, Acting};
 use super::bracket::Bracket;
 use super::{EventDriven, Reached, Run};
 use crate::equilibrium::Iteration;
-use crate::equilibrium::configuration::{Configuration, Failure};
+use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
 use crate::loading::advance::{self, Break, Point, Way};
 use crate::loading::load_path::{COLLAPSE, LoadStep};
@@ -35,10 +35,10 @@ struct Search<'w, 'a> {
     went_on: bool,
 }
 
-/// An equilibrium that is looked at.
+/// An equilibrium that was looked at.
+#[derive(Clone, Copy)]
 struct Trial {
     x: f64,
-    configuration: Configuration,
     /// ρ_max − 1.
     excess: f64,
 }
@@ -85,7 +85,7 @@ impl Search<'_, '_> {
                 if !self.over_limit().is_empty()
                     && let Some(trial) = self.fall()
                 {
-                    self.accept(trial)?;
+                    self.accept(trial.x)?;
                 }
             } else if self.go_on(target)? {
                 self.run.reach(self.run.direction * target);
@@ -113,41 +113,43 @@ impl Search<'_, '_> {
             }
         };
         if trial.excess <= 0.0 {
-            self.accept(trial)?;
+            self.accept(trial.x)?;
             return Ok(end == target);
         }
         let utilisation = advance::utilisation(&self.point.configuration);
         let trial = self.root(self.x, utilisation - 1.0, trial);
-        self.accept(trial)?;
+        self.accept(trial.x)?;
         Ok(false)
     }
 
-    /// The equilibrium at x from the last accepted one.
+    /// The equilibrium at x, from the last accepted one.
     fn look(&mut self, x: f64) -> Result<Trial, Failure> {
         let action = self.acting.at(self.program, x);
-        let mut configuration = self.point.configuration.clone();
-        let progress = &mut self.way.progress;
-        let found = self
-            .system
-            .equilibrate(&mut configuration, &action, progress);
-        if let Err(failure) = found {
-            let secant = self.system.settings.iteration == Iteration::Secant;
-            if !secant || !self.system.any_phases(&configuration) {
-                return Err(failure);
-            }
-            configuration = self.point.configuration.clone();
-            self.system.settings.iteration = Iteration::Tangent;
-            let again = self
+        let excess = self.by_secant_or_tangent(|search| {
+            let mut configuration = search.point.configuration.clone();
+            let progress = &mut search.way.progress;
+            search
                 .system
-                .equilibrate(&mut configuration, &action, progress);
-            self.system.settings.iteration = Iteration::Secant;
-            again.map_err(|_| failure)?;
+                .equilibrate(&mut configuration, &action, progress)?;
+            Ok(advance::utilisation(&configuration) - 1.0)
+        })?;
+        Ok(Trial { x, excess })
+    }
+
+    /// Where the secant finds no admissible phases, by the tangent again.
+    fn by_secant_or_tangent<T>(
+        &mut self,
+        mut seek: impl FnMut(&mut Self) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let found = seek(self);
+        let secant = self.system.settings.iteration == Iteration::Secant;
+        if found.is_ok() || !secant || !self.system.any_phases(&self.point.configuration) {
+            return found;
         }
-        Ok(Trial {
-            x,
-            excess: advance::utilisation(&configuration) - 1.0,
-            configuration,
-        })
+        self.system.settings.iteration = Iteration::Tangent;
+        let again = seek(self);
+        self.system.settings.iteration = Iteration::Secant;
+        again.or(found)
     }
 
     /// Where ρ_max passes 1 between an admissible factor and that of `over`, on the far side of the root.
@@ -197,22 +199,21 @@ impl Search<'_, '_> {
         None
     }
 
-    /// An equilibrium that was looked at becomes the point.
-    fn accept(&mut self, trial: Trial) -> Result<(), Failure> {
-        let action = self.acting.at(self.program, trial.x);
-        let load_factor = self.acting.load_factor(trial.x);
-        let mut point = advance::equilibrium(
-            self.system,
-            self.point,
-            trial.configuration,
-            &action,
-            load_factor,
-            self.way,
-        )?;
-        point.factors = self.acting.factors(trial.x);
+    /// The equilibrium at x, which was looked at, becomes the point.
+    fn accept(&mut self, x: f64) -> Result<(), Failure> {
+        let action = self.acting.at(self.program, x);
+        let load_factor = self.acting.load_factor(x);
+        let mut point = self.by_secant_or_tangent(|search| {
+            let Search {
+                system, point, way, ..
+            } = search;
+            let found = advance::equilibrium(system, point, &[], &action, load_factor, way);
+            Ok(found?.0)
+        })?;
+        point.factors = self.acting.factors(x);
         advance::check(self.system, &point, self.way)?;
-        self.went_on |= trial.x != self.x;
-        self.x = trial.x;
+        self.went_on |= x != self.x;
+        self.x = x;
         *self.point = point;
         Ok(())
     }

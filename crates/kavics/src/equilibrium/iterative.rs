@@ -1,0 +1,195 @@
+//! Linear systems by iteration: when, with what matrix, how far, and what where it fails.
+
+use super::block_stiffness::NodeOrder;
+use super::configuration::Configuration;
+use super::kinematics::FREEDOMS;
+use super::system::System;
+use super::{Breakdown, Iteration, SolverChoice};
+use crate::solver::{BlockSystem, Iterated, IterativeSolver};
+
+/// From this many unknowns on, systems are solved by iteration unless the scene says otherwise.
+const MANY: usize = 1_000_000;
+/// An iteration is ended below this share of the bound on the residual.
+const SHARE: f64 = 0.1;
+/// Where the matrix depends on the state, a step need not be better than this.
+const STEP: f64 = 1e-4;
+/// An iteration that gains no more has served if it came so far.
+const SERVED: f64 = 1e-3;
+
+/// What is kept from one solve by iteration to the next.
+pub struct Iterating {
+    order: NodeOrder,
+    units: Vec<[f64; FREEDOMS]>,
+    solver: Option<IterativeSolver<FREEDOMS>>,
+    /// Of the matrix that the solver has.
+    fingerprint: u64,
+}
+
+impl System<'_> {
+    /// Whether linear systems are solved by iteration.
+    pub(super) fn iterates(&self) -> bool {
+        let wanted = match self.settings.solver {
+            SolverChoice::Auto => self.unknowns() >= MANY,
+            SolverChoice::Direct => false,
+            SolverChoice::Iterative => true,
+        };
+        wanted && self.breakdown.is_none()
+    }
+
+    /// Solves in place, the matrix being that of the secant or of the tangent.
+    ///
+    /// # Errors
+    /// Where the iteration fails.
+    pub(super) fn solve_by_iteration(
+        &mut self,
+        configuration: &Configuration,
+        iteration: Iteration,
+        general: bool,
+        right: &mut [f64],
+    ) -> Result<(), Breakdown> {
+        let mut kept = self.iterating.take().unwrap_or_else(|| {
+            let order = self.node_order();
+            Iterating {
+                units: self.load_units(&order),
+                order,
+                solver: None,
+                fingerprint: 0,
+            }
+        });
+        // The multigrid is that of a symmetric matrix.
+        let symmetric = if general {
+            Iteration::Secant
+        } else {
+            iteration
+        };
+        self.prepare(&mut kept, configuration, symmetric)?;
+        let general =
+            general.then(|| self.block_system(&kept.order, configuration, Iteration::Tangent));
+        let solved = self.run(&mut kept, configuration, general, right);
+        self.iterating = Some(kept);
+        solved
+    }
+
+    /// Gives the solver the matrix of a configuration, if it has not got it.
+    fn prepare(
+        &self,
+        kept: &mut Iterating,
+        configuration: &Configuration,
+        iteration: Iteration,
+    ) -> Result<(), Breakdown> {
+        let fingerprint = self.fingerprint(configuration, iteration);
+        let solver = kept.solver.take().filter(|solver| !solver.is_worn());
+        let solver = match solver {
+            Some(solver) if fingerprint == kept.fingerprint => Ok(solver),
+            Some(mut solver) => {
+                let system = self.block_system(&kept.order, configuration, iteration);
+                solver.take(system, &kept.units).map(|()| solver)
+            }
+            None => {
+                let system = self.block_system(&kept.order, configuration, iteration);
+                IterativeSolver::new(system, &self.rigid_modes(&kept.order), &kept.units)
+            }
+        };
+        kept.solver = Some(solver.map_err(|_| Breakdown::NotPositive)?);
+        kept.fingerprint = fingerprint;
+        Ok(())
+    }
+
+    fn run(
+        &self,
+        kept: &mut Iterating,
+        configuration: &Configuration,
+        general: Option<BlockSystem<FREEDOMS>>,
+        right: &mut [f64],
+    ) -> Result<(), Breakdown> {
+        let loads: Vec<[f64; FREEDOMS]> = self.by_nodes(&kept.order, right);
+        let bound = self.bound(configuration, &loads, &kept.units);
+        let solver = kept.solver.as_mut().ok_or(Breakdown::NotPositive)?;
+        let solution = match general {
+            Some(system) => solver.solve_general(&system, &loads, bound),
+            None => solver.solve(&loads, bound),
+        };
+        match solution.end {
+            Iterated::NegativeCurvature => return Err(Breakdown::NotPositive),
+            Iterated::Stagnated if solution.gain.is_nan() || solution.gain > SERVED => {
+                return Err(Breakdown::Stagnated);
+            }
+            _ => {}
+        }
+        for (&body, values) in kept.order.bodies.iter().zip(&solution.x) {
+            for (number, &value) in self.numbers(body).iter().zip(values) {
+                if let Some(number) = number {
+                    right[*number as usize] = value;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn by_nodes(&self, order: &NodeOrder, right: &[f64]) -> Vec<[f64; FREEDOMS]> {
+        let bodies = order.bodies.iter();
+        bodies
+            .map(|&body| {
+                self.numbers(body)
+                    .map(|number| number.map_or(0.0, |n| right[n as usize]))
+            })
+            .collect()
+    }
+
+    /// Bound on what a solve leaves unbalanced, `[force]`.
+    fn bound(
+        &self,
+        configuration: &Configuration,
+        loads: &[[f64; FREEDOMS]],
+        units: &[[f64; FREEDOMS]],
+    ) -> f64 {
+        let bonds = configuration.bonds.values();
+        let forces = bonds.iter().map(|b| b.force.normal.hypot(b.force.shear));
+        let force = forces.fold(self.largest_force, f64::max);
+        let loads = loads.iter().flatten().zip(units.iter().flatten());
+        let load = loads.map(|(l, u)| (l * u).abs()).fold(0.0, f64::max);
+        let last = SHARE * self.settings.tolerance * force.max(load);
+        let changes = |bond| self.has_phases(bond);
+        if bonds
+            .iter()
+            .any(|b| b.stiffness.hardening != 0.0 || changes(b))
+        {
+            last.max(STEP * load)
+        } else {
+            last
+        }
+    }
+
+    /// A number that changes when the matrix does.
+    fn fingerprint(&self, configuration: &Configuration, iteration: Iteration) -> u64 {
+        let mut fingerprint = Fingerprint::default();
+        for (frame, bond) in self.frames.iter().zip(configuration.bonds.values()) {
+            if bond.is_active() && !self.set_aside[frame.first.0 as usize] {
+                for value in self.stiffness_of(bond, iteration).as_flattened() {
+                    fingerprint.add(value.to_bits());
+                }
+            } else {
+                fingerprint.add(1);
+            }
+        }
+        fingerprint.0
+    }
+}
+
+/// Fowler, Noll & Vo's hash, a word at a time.
+struct Fingerprint(u64);
+
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fingerprint {
+    fn add(&mut self, word: u64) {
+        // The turn brings the high bits down, where the product does not reach.
+        self.0 = (self.0 ^ word)
+            .wrapping_mul(0x0000_0100_0000_01b3)
+            .rotate_left(29);
+    }
+}
