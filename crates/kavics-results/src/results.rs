@@ -70,7 +70,6 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
-        let voids = scene.record_voids.then_some(VOIDS);
         let asked_for = [
             scene.record_voids.then_some(VOIDS),
             scene.record_cracks.then_some(CRACKS),

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use kavics::geometry::{Container, Edges, Vector, power_diagram};
+use kavics::geometry::{Container, Vector, power_diagram};
 use kavics::packing::random::{Purpose, stream};
 use kavics::solver::ordering::{Graph, cost, elimination_order, unknowns_in_order};
 use kavics::solver::{Pattern, SymmetricSolver};
@@ -55,13 +55,7 @@ fn neighbours(centres: &[Vector]) -> Vec<(f64, [u32; 2])> {
         corner(-2.0, far),
     ];
     let radii = vec![0.1; centres.len()];
-    let diagram = power_diagram(
-        centres,
-        &radii,
-        &Container::polygon(&corners),
-        &[],
-        Edges::All,
-    );
+    let diagram = power_diagram(centres, &radii, &Container::polygon(&corners), &[]);
     let pairs = diagram.edges.iter().map(|edge| [edge.first, edge.second]);
     let length = |[a, b]: [u32; 2]| (centres[b as usize] - centres[a as usize]).length();
     let mut pairs: Vec<_> = pairs.map(|pair| (length(pair), pair)).collect();

@@ -452,3 +452,134 @@ fn a_separated_specimen_carries_nothing() {
     assert!(largest < 1e-12, "{largest:e}");
     assert_ledger_closes(&path);
 }
+
+/// Cement whose shear modulus depends on the state.
+fn hardened(text: &str, factor: &str, reading: &str) -> String {
+    let law = "stiffness.layer = { normal = 1.0, shear = 0.4 }";
+    let hardened = format!("{law}\nshear_hardening = {factor}\nreading = \"{reading}\"");
+    assert!(text.contains(law));
+    text.replace(law, &hardened)
+}
+
+/// A block small enough for many equilibria an event.
+fn small_block(action: &str) -> String {
+    let rows = "rows = { count = 9, longest = 12 }";
+    BLOCK
+        .replace(rows, "rows = { count = 5, longest = 6 }")
+        .replace("ACTION", action)
+}
+
+#[test]
+fn a_state_that_hardly_matters_gives_the_events_of_constant_stiffness() {
+    for (action, factors) in [(MOVED, "[0.1, 0.2]"), (WEIGHED, "[0.5, 1.0]")] {
+        let text = with(&small_block(action), "event-driven", factors);
+        let (linear, error) = run(&text);
+        let (rooted, other_error) = run(&hardened(&text, "1e-13", "printed"));
+        assert_eq!(error.is_some(), other_error.is_some());
+        assert!(contacts(&linear).len() > 5);
+        assert_eq!(contacts(&linear), contacts(&rooted));
+        for (one, other) in breaks(&linear).iter().zip(breaks(&rooted)) {
+            assert_close(other.load_factor, one.load_factor, 1e-8);
+            assert_eq!(one.avalanche, other.avalanche);
+        }
+    }
+}
+
+#[test]
+fn with_shear_that_hardens_events_come_in_the_order_of_fine_load_steps() {
+    let text = small_block(MOVED);
+    for reading in ["printed", "potential", "history"] {
+        let text = hardened(&text, "0.75", reading);
+        let (events, error) = run(&with(&text, "event-driven", "[0.1, 0.2]"));
+        assert!(error.is_none(), "{error:?}");
+        let (fine, _) = run(&with(&text, "worst-first", "{ to = 0.2, steps = 400 }"));
+        assert!(contacts(&events).len() > 5);
+        assert_eq!(contacts(&events), contacts(&fine), "{reading}");
+        // A worst-first event comes at the end of the load step in which event-driven has its first of the avalanche.
+        let first = breaks(&events)[0].load_factor;
+        let coarse = breaks(&fine)[0].load_factor;
+        assert!(first <= coarse && coarse - first <= 0.2 / 400.0 + 1e-12);
+    }
+}
+
+#[test]
+fn a_cohesionless_successor_goes_through_to_the_end() {
+    let grit = r#"
+after_breakage = "grit"
+[contact.grit.cohesionless]
+stiffness.layer = { normal = 1.0, shear = 0.5 }
+friction = 0.5
+[[zone]]
+contact = "mortar"
+[[support]]"#;
+    let text = small_block(MOVED).replacen("[[support]]", grit, 1);
+    let (path, error) = run(&with(&text, "event-driven", "[0.1, 0.2]"));
+    assert!(error.is_none(), "{error:?}");
+    assert!(contacts(&path).len() > 5);
+    let last = path.last().expect("an equilibrium");
+    assert!(last.residual <= 1e-10);
+}
+
+#[test]
+fn a_cemented_successor_is_a_change_of_stiffness() {
+    let stub = r#"
+after_breakage = "stub"
+[contact.stub.cemented]
+stiffness.layer = { normal = 0.2, shear = 0.1 }
+[[zone]]
+contact = "mortar"
+[[support]]"#;
+    let text = small_block(MOVED).replacen("[[support]]", stub, 1);
+    let (events, error) = run(&with(&text, "event-driven", "[0.1, 0.2]"));
+    assert!(error.is_none(), "{error:?}");
+    assert!(contacts(&events).len() > 5);
+    assert_ledger_closes(&events);
+}
+
+/// The same state from a fresh factorisation: the broken contacts are no contacts at all.
+#[test]
+fn after_a_thousand_events_the_state_is_that_of_a_fresh_factorisation() {
+    let text = BLOCK
+        .replace("width = 24.0", "width = 90.0")
+        .replace(
+            "{ count = 9, longest = 12 }",
+            "{ count = 45, longest = 45 }",
+        )
+        .replace("ACTION", MOVED);
+    let text = with(&text, "event-driven", "[FACTOR]");
+    let mut last = None;
+    let mut events = 0;
+    for factor in ["0.3", "0.6", "1.0"] {
+        let (path, error) = run(&text.replace("FACTOR", factor));
+        assert!(error.is_none());
+        events = contacts(&path).len();
+        last = path.into_iter().last();
+        if events >= 1000 {
+            break;
+        }
+    }
+    assert!(events >= 1000, "{events}");
+    let last = last.expect("an equilibrium");
+    assert!(last.residual <= 1e-10);
+    let mut fresh = scene(&text.replace("FACTOR", &last.load_factor.to_string()));
+    let kept = fresh.assembly.contacts.iter();
+    let kept = kept.filter(|(id, _)| !last.state.contacts[*id].broken);
+    let mut kept: Vec<_> = kept.map(|(_, contact)| *contact).collect();
+    for contact in &mut kept {
+        contact.strength_factor = 1e9;
+    }
+    fresh.assembly.contacts = kept.into();
+    let found = fresh
+        .load_path()
+        .last()
+        .expect("a step")
+        .expect("an equilibrium");
+    let pairs = last.state.displacements.values().iter();
+    let largest = pairs.clone().map(|u| u.x.hypot(u.y)).fold(0.0, f64::max);
+    for (a, b) in pairs.zip(found.state.displacements.values()) {
+        assert!(
+            (a.x - b.x).hypot(a.y - b.y) <= 1e-9 * largest,
+            "{a:?} {b:?}"
+        );
+    }
+}

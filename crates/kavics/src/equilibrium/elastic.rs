@@ -65,13 +65,16 @@ impl System<'_> {
         right
     }
 
-    /// Answers to what given forces of contacts do to their bodies.
-    pub fn answer_entries(&mut self, entries: &Entries<2>) -> Vec<[f64; 2]> {
-        let mut answer = vec![[0.0; 2]; self.unknowns()];
+    /// Answers to what given forces of contacts do to their bodies, by unknown.
+    pub fn answer_entries<const R: usize>(
+        &mut self,
+        entries: &Entries<R>,
+        answer: &mut Vec<[f64; R]>,
+    ) {
+        answer.resize(self.unknowns(), [0.0; R]);
         if let Some(solver) = self.symmetric.as_mut() {
-            solver.solve_sparse(entries, &mut answer);
+            solver.solve_sparse(entries, answer);
         }
-        answer
     }
 
     /// Bᵀ·Q of a contact at the unknowns: the loads that its bodies need to bear the forces `q`.
@@ -108,8 +111,12 @@ impl System<'_> {
             || holds_without(solver.flexibility(&entries)) && solver.remove(&entries).is_ok()
     }
 
-    /// Adds the answers to the displacements; nothing that is set aside moves.
-    pub fn add_answer(&self, displacements: &mut [[Displacement; 2]], answer: &[[f64; 2]]) {
+    /// Adds the answers to the displacements, a single one to the part that varies; nothing that is set aside moves.
+    pub fn add_answer<const R: usize>(
+        &self,
+        displacements: &mut [[Displacement; 2]],
+        answer: &[[f64; R]],
+    ) {
         for (body, numbers) in self.numbers.iter().enumerate() {
             if self.set_aside[body] {
                 continue;
@@ -117,7 +124,7 @@ impl System<'_> {
             for (freedom, number) in ALL_FREEDOMS.into_iter().zip(numbers) {
                 if let Some(number) = number {
                     let step = answer[*number as usize];
-                    for (u, step) in displacements[body].iter_mut().zip(step) {
+                    for (u, step) in displacements[body][2 - R..].iter_mut().zip(step) {
                         *u.component_mut(freedom) += step;
                     }
                 }

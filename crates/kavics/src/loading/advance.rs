@@ -43,7 +43,7 @@ pub struct Way {
 }
 
 /// A bond that breaks.
-struct Break {
+pub struct Break {
     contact: ContactId,
     mode: Mode,
 }
@@ -93,7 +93,7 @@ pub fn advance(
 }
 
 /// The equilibrium under `action`, reached from `before` while some forces vanish, and what each of these sets free.
-fn equilibrium(
+pub(super) fn equilibrium(
     system: &mut System<'_>,
     before: &Point,
     vanishing: &[Vanishing],
@@ -233,14 +233,10 @@ pub(super) fn set_aside_events<'a>(
 }
 
 /// The bonds that break now: the worst with its ties, or all beyond their limits.
-fn over_limit(point: &Point, tie_tolerance: f64, breakage: Breakage) -> Vec<Break> {
+pub(super) fn over_limit(point: &Point, tie_tolerance: f64, breakage: Breakage) -> Vec<Break> {
     let utilisation = |bond: &Bond| bond.limits.utilisation(bond.force);
     let bonds = &point.configuration.bonds;
-    let worst = bonds
-        .values()
-        .iter()
-        .map(|bond| utilisation(bond).0)
-        .fold(0.0, f64::max);
+    let worst = self::utilisation(&point.configuration);
     if worst <= 1.0 {
         return Vec::new();
     }
@@ -258,8 +254,16 @@ fn over_limit(point: &Point, tie_tolerance: f64, breakage: Breakage) -> Vec<Brea
         .collect()
 }
 
+/// Largest utilisation of any bond.
+pub(super) fn utilisation(configuration: &Configuration) -> f64 {
+    let bonds = configuration.bonds.values().iter();
+    bonds
+        .map(|bond| bond.limits.utilisation(bond.force).0)
+        .fold(0.0, f64::max)
+}
+
 /// Breaks bonds and finds the next equilibrium under the same action.
-fn break_bonds(
+pub(super) fn break_bonds(
     system: &mut System<'_>,
     point: &Point,
     broken: &[Break],

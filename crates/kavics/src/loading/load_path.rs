@@ -15,7 +15,7 @@ use crate::equilibrium::{
 use crate::ids::PerProperty;
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
-const COLLAPSE: f64 = 1e-4;
+pub(super) const COLLAPSE: f64 = 1e-4;
 
 /// The equilibria of a program, one load step after the other.
 ///

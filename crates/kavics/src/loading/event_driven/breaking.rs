@@ -1,7 +1,7 @@
 //! Bonds of linear contacts break: their stiffness goes out of the factor, and the change of the displacements is
 //! solved for.
 
-use super::linear::Walk;
+use super::linear::{Course, MOST_SOLVES, Walk};
 use super::spring::{force_at, less, relative_at};
 use crate::contact_law::{ContactForce, Mode, RelativeDisplacement};
 use crate::equilibrium::bond::Bond;
@@ -14,7 +14,7 @@ use crate::loading::advance;
 /// The factor is made anew after so many events.
 const MOST_EVENTS: usize = 512;
 /// The balance is looked at after so many events.
-const LOOK_EVERY: usize = 64;
+const LOOK_EVERY: usize = 128;
 /// With more left unbalanced than this share of the forces the factor is made anew.
 const DRIFT: f64 = 1e-10;
 
@@ -42,7 +42,7 @@ struct Before {
 impl Walk<'_, '_> {
     /// Breaks bonds together where the factor stands, and finds the line that goes on from there.
     pub fn break_bonds(&mut self, contacts: &[(ContactId, Mode)]) -> Result<(), Failure> {
-        let was_proportional = self.course.proportional;
+        let was_proportional = self.course.network.proportional;
         let mut entries = Entries::new();
         let mut in_place = true;
         let mut broken = Vec::with_capacity(contacts.len());
@@ -51,17 +51,33 @@ impl Walk<'_, '_> {
         }
         if in_place {
             self.way.progress.iterations += 1;
-            let answer = self.system.answer_entries(&entries);
-            let displacements = &mut self.course.network.displacements;
-            self.system.add_answer(displacements, &answer);
+            self.solve_for_change(&entries);
         } else {
             self.make_anew(&broken, was_proportional)?;
         }
         self.went_on = true;
-        self.record(&broken);
+        self.record(&broken, !in_place);
         self.course.events = self.course.events.saturating_add(1);
         self.look_after();
         Ok(())
+    }
+
+    /// K′·Δu = Σ Bᵀ·ΔQ, for the part that varies alone where there is no other.
+    fn solve_for_change(&mut self, entries: &Entries<2>) {
+        let Course {
+            network,
+            answers,
+            answer,
+            ..
+        } = &mut self.course;
+        if network.proportional {
+            let varying: Entries<1> = entries.iter().map(|e| (e.0, [e.1[1]])).collect();
+            self.system.answer_entries(&varying, answer);
+            self.system.add_answer(&mut network.displacements, answer);
+        } else {
+            self.system.answer_entries(entries, answers);
+            self.system.add_answer(&mut network.displacements, answers);
+        }
     }
 
     /// One bond gives way to its successor.
@@ -98,7 +114,7 @@ impl Walk<'_, '_> {
                 .less(&new)
                 .is_some_and(|columns| system.take_out(contact, columns));
         // A successor is free of shear and bending where it came to be, not at zero.
-        self.course.proportional &= bond.property.is_none();
+        network.proportional &= bond.property.is_none();
         Broken {
             contact,
             mode,
@@ -120,7 +136,7 @@ impl Walk<'_, '_> {
         self.leave_out();
         let network = &mut self.course.network;
         network.freeze(self.system, &before.set_aside, self.x);
-        if self.factorise() && self.balance() {
+        if self.factorise() && self.balance(MOST_SOLVES) {
             return Ok(());
         }
         self.go_back(before.displacements);
@@ -131,7 +147,7 @@ impl Walk<'_, '_> {
             network.renew_spring(broken.contact, &broken.bond);
         }
         self.system.set_aside = before.set_aside;
-        self.course.proportional = before.proportional;
+        self.course.network.proportional = before.proportional;
         self.course.events = usize::MAX;
         Err(failure)
     }
@@ -147,7 +163,7 @@ impl Walk<'_, '_> {
     }
 
     /// Work, energies and events of a break.
-    fn record(&mut self, broken: &[Broken]) {
+    fn record(&mut self, broken: &[Broken], may_be_loose: bool) {
         let load_factor = self.load_factor();
         let direction = self.run.direction;
         let avalanche = Some(self.run.avalanche(direction * self.x));
@@ -167,7 +183,9 @@ impl Walk<'_, '_> {
                 avalanche,
             });
         }
-        self.note_set_aside(load_factor, avalanche);
+        if may_be_loose {
+            self.note_set_aside(load_factor, avalanche);
+        }
     }
 
     /// Goes over to the new line; answers the energy that each bond sets free beyond its own.
@@ -182,7 +200,7 @@ impl Walk<'_, '_> {
             .collect();
         let own: f64 = broken.iter().map(|broken| broken.fracture_energy).sum();
         let whole = own + beyond.iter().sum::<f64>();
-        if self.course.proportional && whole > 0.0 {
+        if self.course.network.proportional && whole > 0.0 {
             self.x *= own / whole;
             self.arrive();
             return vec![0.0; broken.len()];
@@ -219,13 +237,13 @@ impl Walk<'_, '_> {
         let events = self.course.events;
         if events >= MOST_EVENTS {
             self.factorise();
-            self.balance();
+            self.balance(MOST_SOLVES);
         } else if events.is_multiple_of(LOOK_EVERY) {
             let residual = self.course.network.residual(self.system, self.farthest);
             if !residual.is_small(DRIFT, self.system.noise()) {
                 self.factorise();
             }
-            self.balance();
+            self.balance(1);
         }
         self.keep_iterate();
     }

@@ -28,19 +28,21 @@ const ROUNDING: f64 = 1e-13;
 /// A residual above this share of the forces, though solved for, says that the loads move a mechanism.
 const UNBALANCED: f64 = 1e-9;
 /// Solves after which a residual is what it is.
-const MOST_SOLVES: usize = 3;
+pub const MOST_SOLVES: usize = 3;
 
 /// What is kept from event to event.
 #[derive(Clone, Debug)]
 pub struct Course {
     pub network: Network,
     pub places: OuterPlaces,
-    /// Whether nothing acts and nothing is strained at x = 0.
-    pub proportional: bool,
     /// Floppy modes held in the factor.
     pub held: usize,
     /// Events since the factor was made.
     pub events: usize,
+    /// Room for the answers to an event.
+    pub answers: Vec<[f64; 2]>,
+    /// Room for the answer to an event where all is proportional.
+    pub answer: Vec<[f64; 1]>,
 }
 
 /// A way through a load step.
@@ -121,14 +123,15 @@ impl Course {
             None => Self {
                 network: Network::new(system, configuration, acting),
                 places: OuterPlaces::default(),
-                proportional: false,
                 held: 0,
                 events: usize::MAX,
+                answers: Vec::new(),
+                answer: Vec::new(),
             },
         };
         course.places = OuterPlaces::new(system, &course.network);
         let bonds = configuration.bonds.values();
-        course.proportional = course.network.acting.is_proportional()
+        course.network.proportional = course.network.acting.is_proportional()
             && bonds
                 .iter()
                 .all(|bond| !bond.broken || bond.property.is_none());
@@ -145,7 +148,7 @@ impl Walk<'_, '_> {
             let network = &mut self.course.network;
             network.start_again(self.system, &self.point.configuration);
             let stale = self.course.events == usize::MAX || before != self.system.set_aside;
-            if stale && !self.factorise() || !self.balance() {
+            if stale && !self.factorise() || !self.balance(MOST_SOLVES) {
                 self.course.events = usize::MAX;
                 return Err(self.failure_from_here());
             }
@@ -251,12 +254,12 @@ impl Walk<'_, '_> {
         factor.is_ok()
     }
 
-    /// Solves for what is unbalanced; whether nothing is any more.
-    pub fn balance(&mut self) -> bool {
+    /// Solves for what is unbalanced, so often at most; whether nothing is any more.
+    pub fn balance(&mut self, most_solves: usize) -> bool {
         for solve in 0.. {
             let residual = self.course.network.residual(self.system, self.farthest);
             let noise = self.system.noise();
-            if solve == MOST_SOLVES || residual.is_small(ROUNDING, noise) {
+            if solve == most_solves || residual.is_small(ROUNDING, noise) {
                 self.system.largest_force = self.system.largest_force.max(residual.force);
                 return residual.is_small(UNBALANCED, noise);
             }
@@ -327,7 +330,7 @@ impl Walk<'_, '_> {
             if tries == 1 {
                 self.factorise();
             }
-            self.balance();
+            self.balance(MOST_SOLVES);
             self.arrive();
             tries += 1;
         };

@@ -5,11 +5,15 @@
 //! a root (`rooted.rs`).
 
 mod acting;
+mod bracket;
 mod breaking;
 mod linear;
 mod network;
 mod outer;
+mod rooted;
 mod spring;
+
+use std::iter::successors;
 
 use self::linear::Course;
 use super::Program;
@@ -17,6 +21,7 @@ use super::advance::{Point, Way};
 use super::load_path::LoadStep;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
+use crate::ids::PerProperty;
 
 /// Event-driven breakage: what is kept from one load step to the next.
 #[derive(Debug, Default)]
@@ -105,6 +110,24 @@ impl EventDriven {
         let ends = acting::ends(program, load_step);
         let common = acting::is_common(program, load_step);
         self.run.turn(load_step.stage, common, ends);
-        linear::advance(self, system, program, point, load_step, way)
+        if is_linear(system, point) {
+            linear::advance(self, system, program, point, load_step, way)
+        } else {
+            rooted::advance(self, system, program, point, load_step, way)
+        }
     }
+}
+
+/// Whether every contact is linear, and whatever it may break into.
+fn is_linear(system: &System<'_>, point: &Point) -> bool {
+    let properties = system.properties;
+    let mut linear = PerProperty::filled(false, properties.len());
+    for (property, linear) in properties.ids().zip(linear.values_mut()) {
+        let mut chain = successors(Some(property), |&p| properties[p].law.after_breakage());
+        *linear = chain.all(|p| properties[p].law.is_linear());
+    }
+    let bonds = point.configuration.bonds.values().iter();
+    bonds
+        .filter_map(|bond| bond.property)
+        .all(|property| linear[property])
 }

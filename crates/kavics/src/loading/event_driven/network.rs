@@ -18,6 +18,8 @@ pub struct Network {
     pub displacements: Vec<[Displacement; 2]>,
     /// What acts.
     pub acting: Acting,
+    /// Whether nothing acts and nothing is strained at x = 0.
+    pub proportional: bool,
 }
 
 /// How far the displacements of a network are from balance.
@@ -48,6 +50,7 @@ impl Network {
             springs: bonds.map(Spring::new).collect(),
             displacements: vec![[Displacement::default(); 2]; acting.loads.len()],
             acting,
+            proportional: false,
         };
         network.start_again(system, configuration);
         network
@@ -113,6 +116,13 @@ impl Network {
 
     /// Forces of a contact.
     pub fn forces(&self, system: &System<'_>, contact: usize) -> [ContactForce; 2] {
+        if self.proportional {
+            let frame = &system.frames[contact];
+            let [first, second] = [frame.first, frame.second].map(BodyId::index);
+            let [first, second] = [first, second].map(|body| self.displacements[body][1]);
+            let v = frame.relative_displacement(first, second);
+            return [ContactForce::default(), self.springs[contact].force_by(v)];
+        }
         self.springs[contact].forces(self.relative(system, contact))
     }
 

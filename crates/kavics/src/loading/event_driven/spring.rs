@@ -79,21 +79,21 @@ impl Spring {
 
     /// Forces along the line.
     pub fn forces(&self, v: [RelativeDisplacement; 2]) -> [ContactForce; 2] {
-        let origin = RelativeDisplacement {
-            normal: 0.0,
-            shear: self.origin[0],
-            rotation: self.origin[1],
+        let felt = RelativeDisplacement {
+            normal: v[0].normal,
+            shear: v[0].shear - self.origin[0],
+            rotation: v[0].rotation - self.origin[1],
         };
-        let origins = [origin, RelativeDisplacement::default()];
-        [0, 1].map(|part| {
-            let shear = v[part].shear - origins[part].shear;
-            let rotation = v[part].rotation - origins[part].rotation;
-            ContactForce {
-                normal: self.normal * v[part].normal + self.coupling * rotation,
-                shear: self.shear * shear,
-                moment: self.coupling * v[part].normal + self.moment * rotation,
-            }
-        })
+        [self.force_by(felt), self.force_by(v[1])]
+    }
+
+    /// Force by the relative displacement since it came to be.
+    pub fn force_by(&self, v: RelativeDisplacement) -> ContactForce {
+        ContactForce {
+            normal: self.normal * v.normal + self.coupling * v.rotation,
+            shear: self.shear * v.shear,
+            moment: self.coupling * v.normal + self.moment * v.rotation,
+        }
     }
 
     /// Where the contact holds under given forces; `direction` −1 counts factors the other way.
