@@ -169,14 +169,14 @@ impl Cohesionless {
                 shear::dissipation(self.reading, v, force.shear, k, memory)
             };
             return Dissipation {
-                friction: 0.0,
                 nonpotential,
+                ..Dissipation::default()
             };
         };
         if phase == Phase::Closed {
             return Dissipation {
-                friction: 0.0,
                 nonpotential: shear::dissipation(self.reading, v, force.shear, k, memory),
+                ..Dissipation::default()
             };
         }
         if sense(phase).is_none() && !opens {
@@ -191,6 +191,7 @@ impl Cohesionless {
         Dissipation {
             friction: sliding_work(friction, v, force, k, memory, opens),
             nonpotential,
+            fracture: 0.0,
         }
     }
 }

@@ -7,9 +7,11 @@
 mod cemented;
 mod cohesionless;
 mod shear;
+mod softening;
 mod stiffness;
 mod strength;
 
+pub use softening::{Damage, Softening};
 pub use stiffness::Stiffness;
 pub use strength::Limits;
 
@@ -118,6 +120,9 @@ pub struct Strength {
     pub shear: f64,
     /// Limit of bending.
     pub bending: f64,
+    /// Energy G_f, per area of the dual edge, that it takes to break the bond, which then softens beyond its limits,
+    /// `[force/length]`; none: it breaks at once.
+    pub fracture_energy: Option<f64>,
 }
 
 /// What the limits of a [`Strength`] are.
@@ -137,6 +142,7 @@ impl Strength {
         compression: f64::INFINITY,
         shear: f64::INFINITY,
         bending: f64::INFINITY,
+        fracture_energy: None,
     };
 }
 
@@ -153,7 +159,7 @@ pub enum Mode {
     Bending,
 }
 
-/// A bonded contact: normal force, shear force and moment; breaks when a component exceeds its limit.
+/// A bonded contact: normal force, shear force and moment; breaks when a component exceeds its limit, or softens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cemented {
     /// Stiffness.
@@ -200,6 +206,8 @@ pub struct ContactMemory {
     pub slip: f64,
     /// Relative rotation at which the contact came to be, dimensionless.
     pub rotation_origin: f64,
+    /// Of a softening bond.
+    pub damage: Damage,
 }
 
 /// A square matrix over the components normal, shear, rotation.
@@ -223,6 +231,8 @@ pub struct Dissipation {
     pub friction: f64,
     /// Work that a law without potential took (positive) or gave (negative).
     pub nonpotential: f64,
+    /// Energy that softening took.
+    pub fracture: f64,
 }
 
 /// A phase that a contact asks for, and how far the present one is from admissible, `[force]`.
@@ -260,11 +270,13 @@ impl Law {
         }
     }
 
-    /// Limits of the force components; none where nothing breaks.
+    /// Limits of the force components; none where nothing breaks at once.
     pub fn limits(&self, geometry: &ContactGeometry, factor: f64) -> Limits {
         match self {
-            Self::Cemented(law) => law.strength.limits(geometry, factor),
-            Self::Cohesionless(_) => Limits::UNBREAKABLE,
+            Self::Cemented(law) if law.strength.fracture_energy.is_none() => {
+                law.strength.limits(geometry, factor)
+            }
+            Self::Cemented(_) | Self::Cohesionless(_) => Limits::UNBREAKABLE,
         }
     }
 
@@ -323,11 +335,16 @@ impl Law {
             Self::Cemented(_) => memory.slip,
             Self::Cohesionless(law) => law.slip(v, force, k, memory, phase),
         };
+        let damage = k.softening.map_or(memory.damage, |softening| Damage {
+            dissipated: memory.damage.dissipated + softening.dissipation(v, k, memory),
+            ..softening.damage(v, k, memory)
+        });
         ContactMemory {
             displacement: v,
             force,
             phase,
             slip,
+            damage,
             ..*memory
         }
     }
@@ -342,6 +359,11 @@ impl Law {
     ) -> f64 {
         if force == ContactForce::default() {
             return 0.0;
+        }
+        if k.softening.is_some() {
+            // A secant law: half of force times displacement.
+            return 0.5
+                * (force.normal * v.normal + force.shear * v.shear + force.moment * v.rotation);
         }
         let rotation = v.rotation - memory.rotation_origin;
         let bending = 0.5 * k.moment * rotation * rotation + k.coupling * v.normal * rotation;
@@ -362,6 +384,9 @@ impl Law {
         match self {
             Self::Cemented(law) => Dissipation {
                 nonpotential: shear::dissipation(law.reading, v, force.shear, k, memory),
+                fracture: k
+                    .softening
+                    .map_or(0.0, |softening| softening.dissipation(v, k, memory)),
                 friction: 0.0,
             },
             Self::Cohesionless(law) => law.dissipation(v, force, k, memory, phase),

@@ -42,7 +42,7 @@ pub fn elastic_energy(configuration: &Configuration, properties: &PerProperty<Pr
         .sum()
 }
 
-/// What friction and laws without potential took since the last equilibrium.
+/// What friction, laws without potential and softening took since the last equilibrium.
 pub fn dissipation(
     configuration: &Configuration,
     properties: &PerProperty<Property>,
@@ -59,6 +59,7 @@ pub fn dissipation(
             );
             sum.friction += part.friction;
             sum.nonpotential += part.nonpotential;
+            sum.fracture += part.fracture;
         }
     }
     sum
@@ -85,5 +86,6 @@ pub fn add_way(
     energy.external_work += external_work(before, after);
     energy.friction_work += dissipation.friction;
     energy.nonpotential_work += dissipation.nonpotential;
+    energy.fracture_energy += dissipation.fracture;
     energy.elastic_energy = elastic_energy(after.0, properties);
 }
