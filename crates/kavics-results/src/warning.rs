@@ -48,6 +48,9 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::SecondOrderWork { .. } => {
             format!("second-order work negative in {}", count("contact"))
         }
+        Warning::Separated => {
+            "separated: the loads fell to zero; what would follow is left out".to_owned()
+        }
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
     format!("load step{plural} {}: {what}", ranges(steps))
@@ -57,6 +60,7 @@ fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
+        Warning::Separated => 1,
     }
 }
 

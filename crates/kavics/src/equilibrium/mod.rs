@@ -11,6 +11,7 @@ mod linear;
 mod pieces;
 mod search;
 mod sparsity;
+pub(crate) mod steered;
 pub(crate) mod system;
 
 pub use error::SolveError;
@@ -163,7 +164,7 @@ pub struct Energy {
     pub external_work: f64,
     /// Energy that the contacts hold now.
     pub elastic_energy: f64,
-    /// Energy of bonds at the moment they broke.
+    /// Energy of bonds at the moment they broke, and what softening takes.
     pub fracture_energy: f64,
     /// Work of friction.
     pub friction_work: f64,
@@ -214,6 +215,8 @@ pub enum Warning {
         /// In how many contacts.
         contacts: usize,
     },
+    /// Nothing ties the loaded part to the supports any more; the path ends.
+    Separated,
 }
 
 /// An equilibrium: the end of a load step, or the undeformed state as step 0.

@@ -37,6 +37,8 @@ pub struct Way {
     pub warnings: Vec<Warning>,
     /// Linear solves and iterates.
     pub progress: Progress,
+    /// Energy that softening took, `[force·length]`.
+    pub softened: f64,
 }
 
 /// A bond that breaks.
@@ -84,20 +86,33 @@ pub fn advance(
         load_factor,
         way,
     )?;
+    here = hold(system, here, breakage, &action, load_factor, way)?;
+    here.factors = factors.to_vec();
+    Ok(here)
+}
+
+/// From an equilibrium under `action` to one in which no bond is beyond its limits.
+pub fn hold(
+    system: &mut System<'_>,
+    mut here: Point,
+    breakage: Breakage,
+    action: &Action,
+    load_factor: f64,
+    way: &mut Way,
+) -> Result<Point, Failure> {
     loop {
         let broken = over_limit(&here, system.settings.tie_tolerance, breakage);
         if broken.is_empty() {
             break;
         }
-        here = break_bonds(system, &here, &broken, &action, load_factor, way)?;
+        here = break_bonds(system, &here, &broken, action, load_factor, way)?;
     }
-    here.factors = factors.to_vec();
     check(system, &here, way)?;
     Ok(here)
 }
 
 /// The equilibrium under `action`, reached from `configuration`; `before` is the last one.
-fn equilibrium(
+pub fn equilibrium(
     system: &mut System<'_>,
     before: &Point,
     mut configuration: Configuration,
@@ -106,6 +121,25 @@ fn equilibrium(
     way: &mut Way,
 ) -> Result<Point, Failure> {
     system.equilibrate(&mut configuration, action, &mut way.progress)?;
+    Ok(settled(
+        system,
+        before,
+        configuration,
+        action,
+        load_factor,
+        way,
+    ))
+}
+
+/// The point that a configuration in equilibrium is; `before` is the last one.
+pub fn settled(
+    system: &mut System<'_>,
+    before: &Point,
+    mut configuration: Configuration,
+    action: &Action,
+    load_factor: f64,
+    way: &mut Way,
+) -> Point {
     let imbalance = system.imbalance(&configuration, &action.loads);
     system.largest_force = system.largest_force.max(imbalance.force);
     let forces = Forces {
@@ -119,6 +153,7 @@ fn equilibrium(
         (&configuration, &forces),
         system.properties,
     );
+    way.softened += energy.fracture_energy - before.energy.fracture_energy;
     let set_aside = system.loose_grains();
     let iteration = way.progress.iterations;
     let happened = phase_events(&before.configuration, &configuration)
@@ -132,15 +167,56 @@ fn equilibrium(
     for bond in configuration.bonds.values_mut() {
         bond.remember(system.properties);
     }
-    let factors = before.factors.clone();
-    Ok(Point {
+    let mut point = Point {
         configuration,
         forces,
         energy,
-        factors,
+        factors: before.factors.clone(),
         set_aside,
         residual: way.progress.residual,
-    })
+    };
+    break_softened(system, &mut point, 0.0, load_factor, way);
+    point
+}
+
+/// Breaks the bonds that softening has left at most this share of their force.
+pub fn break_softened(
+    system: &System<'_>,
+    point: &mut Point,
+    share: f64,
+    load_factor: f64,
+    way: &mut Way,
+) {
+    for contact in system.assembly.contacts.ids() {
+        let bond = &mut point.configuration.bonds[contact];
+        let Some((left, mode)) = bond.left().filter(|(left, _)| *left <= share) else {
+            continue;
+        };
+        // What little it still holds goes with it.
+        let held = if left > 0.0 {
+            bond.energy(system.properties)
+        } else {
+            0.0
+        };
+        let fracture_energy = held + bond.memory.damage.dissipated;
+        bond.break_into_successor(
+            &system.assembly.contacts[contact],
+            system.properties,
+            system.assembly.thickness,
+        );
+        point.energy.fracture_energy += held;
+        point.energy.elastic_energy -= held;
+        way.events.push(Event {
+            iteration: way.progress.iterations,
+            load_factor,
+            kind: EventKind::Broke {
+                contact,
+                mode,
+                fracture_energy,
+                release_energy: 0.0,
+            },
+        });
+    }
 }
 
 /// What bound freedoms need so that nothing stays unbalanced.

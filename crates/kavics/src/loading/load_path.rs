@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::advance::{self, Point, Way};
+use super::control::{PathControl, Steered};
 use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
@@ -12,35 +13,38 @@ use crate::equilibrium::{Equilibrium, Iteration, Settings, SolveError};
 use crate::ids::PerProperty;
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
-const COLLAPSE: f64 = 1e-4;
+pub(super) const COLLAPSE: f64 = 1e-4;
 
 /// The equilibria of a program, one load step after the other.
 ///
 /// The first item is the undeformed state, step 0. Where a load step cannot be finished, the last equilibrium
 /// found within it comes with `complete = false`, then the error, then nothing.
 pub struct LoadPath<'a> {
-    system: System<'a>,
-    program: &'a Program,
-    breakage: Breakage,
-    point: Point,
+    pub(super) system: System<'a>,
+    pub(super) program: &'a Program,
+    pub(super) breakage: Breakage,
+    pub(super) point: Point,
     /// Stage and place of the next load step in it.
-    next: (usize, usize),
-    step: usize,
-    waiting: VecDeque<Result<Equilibrium, SolveError>>,
-    failed: bool,
+    pub(super) next: (usize, usize),
+    pub(super) step: usize,
+    pub(super) waiting: VecDeque<Result<Equilibrium, SolveError>>,
+    /// No load step is left: an error, or separated.
+    pub(super) ended: bool,
+    pub(super) steered: Steered,
 }
 
 /// Factors at the two ends of a load step.
-struct LoadStep {
-    stage: usize,
-    from: Vec<f64>,
-    to: Vec<f64>,
+#[derive(Clone)]
+pub(super) struct LoadStep {
+    pub(super) stage: usize,
+    pub(super) from: Vec<f64>,
+    pub(super) to: Vec<f64>,
     /// The stage's load factor at the two ends.
-    load_factor: [f64; 2],
+    pub(super) load_factor: [f64; 2],
 }
 
 impl LoadStep {
-    fn factors(&self, share: f64) -> Vec<f64> {
+    pub(super) fn factors(&self, share: f64) -> Vec<f64> {
         let between = |(from, to): (&f64, &f64)| {
             if share == 1.0 {
                 *to
@@ -51,13 +55,19 @@ impl LoadStep {
         self.from.iter().zip(&self.to).map(between).collect()
     }
 
-    fn load_factor(&self, share: f64) -> f64 {
+    pub(super) fn load_factor(&self, share: f64) -> f64 {
         let [from, to] = self.load_factor;
         if share == 1.0 {
             to
         } else {
             from + share * (to - from)
         }
+    }
+
+    /// Share at which the stage's load factor is zero.
+    pub(super) fn unloaded(&self) -> f64 {
+        let [from, to] = self.load_factor;
+        from / (from - to)
     }
 
     /// Share of this load step to which its end is to be known.
@@ -91,7 +101,8 @@ impl<'a> LoadPath<'a> {
             next: (0, 0),
             step: 0,
             waiting: VecDeque::new(),
-            failed: false,
+            ended: false,
+            steered: Steered::default(),
         };
         let way = Way {
             events: advance::first_events(&path.point),
@@ -100,6 +111,13 @@ impl<'a> LoadPath<'a> {
         let start = path.equilibrium(0, 0.0, true, 0, way);
         path.waiting.push_back(Ok(start));
         path
+    }
+
+    /// The same path, stages steered by `control`.
+    #[must_use]
+    pub fn steered_by(mut self, control: PathControl) -> Self {
+        self.steered = Steered::new(control, &self.point.configuration);
+        self
     }
 
     /// Number of unknown displacements and rotations.
@@ -131,7 +149,7 @@ impl<'a> LoadPath<'a> {
     }
 
     /// Finishes a load step, in parts where it does not go in one.
-    fn take(&mut self, load_step: &LoadStep) {
+    pub(super) fn take(&mut self, load_step: &LoadStep) {
         self.step += 1;
         let mut way = Way::default();
         let (mut done, mut part, mut cuts) = (0.0, 1.0, 0);
@@ -166,12 +184,17 @@ impl<'a> LoadPath<'a> {
                 self.system.assembly,
                 tolerance,
             )));
-            self.failed = true;
+            self.ended = true;
         }
     }
 
     /// One part of a load step, where the secant finds no admissible phases by the tangent again.
-    fn attempt(&mut self, load_step: &LoadStep, share: f64, way: &mut Way) -> Result<(), Failure> {
+    pub(super) fn attempt(
+        &mut self,
+        load_step: &LoadStep,
+        share: f64,
+        way: &mut Way,
+    ) -> Result<(), Failure> {
         let failure = match self.attempt_once(load_step, share, way) {
             Err(failure)
                 if self.system.settings.iteration == Iteration::Secant && self.has_phases() =>
@@ -221,7 +244,7 @@ impl<'a> LoadPath<'a> {
         }
     }
 
-    fn equilibrium(
+    pub(super) fn equilibrium(
         &self,
         stage: usize,
         load_factor: f64,
@@ -253,9 +276,13 @@ impl Iterator for LoadPath<'_> {
     type Item = Result<Equilibrium, SolveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.waiting.is_empty() && !self.failed {
+        if self.waiting.is_empty() && !self.ended {
             let load_step = self.next_load_step()?;
-            self.take(&load_step);
+            if self.steered.is_load_controlled() {
+                self.take(&load_step);
+            } else {
+                self.take_steered(load_step);
+            }
         }
         self.waiting.pop_front()
     }

@@ -3,9 +3,11 @@
 //! In: an assembly, its contact properties and a [`Program`]. Out: one equilibrium per load step.
 
 mod advance;
+mod control;
 mod ledger;
 mod load_path;
 mod program;
 
+pub use control::{Control, PathControl};
 pub use load_path::LoadPath;
 pub use program::{Action, AppliedLoad, Breakage, Held, Prescribed, Program, Stage};
