@@ -260,6 +260,21 @@ impl Softening {
         first_to_meet(&self.way(end, k, memory).lines, limit).meets(limit)
     }
 
+    /// Shares of the straight way from the remembered displacement to `v` at which the bond comes to its limit and
+    /// breaks.
+    pub fn corners(
+        &self,
+        v: RelativeDisplacement,
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> [f64; 2] {
+        let lines = self.way(v, k, memory).lines;
+        let meets = |height| first_to_meet(&lines, height).meets(height);
+        let mode = self.damage(v, k, memory).mode;
+        let broken = mode.map_or(f64::INFINITY, |mode| meets(self.ultimate(k, mode)));
+        [meets(memory.damage.utilisation.max(1.0)), broken]
+    }
+
     /// Share of the force that is left, and the mode in which the bond began to soften.
     pub fn left(&self, k: &Stiffness, memory: &ContactMemory) -> (f64, Option<Mode>) {
         (1.0 - self.lost(k, &memory.damage), memory.damage.mode)

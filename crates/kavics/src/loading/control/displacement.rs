@@ -48,10 +48,13 @@ impl LoadPath<'_> {
                 Ok(share) => {
                     let load_factor = here.load_factor(share);
                     done += part;
+                    here = onward(&here, share);
+                    if self.break_worn(&here, 0.0, None, way) {
+                        return Ok(Reached::Separated);
+                    }
                     if done >= 1.0 {
                         return Ok(Reached::Displacement { load_factor });
                     }
-                    here = onward(&here, share);
                     part = part.min(1.0 - done);
                 }
                 Err(failure) if 0.5 * part < 0.5 * COLLAPSE => {

@@ -1,10 +1,11 @@
 //! Load steps steered by the energy that softening takes.
 
 use super::Control;
-use super::path::Reached;
+use super::path::{CLOSED, Reached};
 use crate::equilibrium::Iteration;
 use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::steered::{Aim, Steering};
+use crate::ids::BodyId;
 use crate::loading::LoadPath;
 use crate::loading::advance::{self, Point, Way};
 use crate::loading::load_path::LoadStep;
@@ -15,11 +16,17 @@ const CUT: f64 = 0.25;
 /// Linear solves that a load step should take.
 const WANTED_SOLVES: f64 = 5.0;
 /// A load step takes no more than this share of what is left to take of the bonds on their limits.
-const ALMOST: f64 = 1.0 - 1e-9;
+const ALMOST: f64 = 1.0 - 5e-4;
 /// A bond is brought to its limit up to this share.
 const TO_LIMIT: f64 = 1.0 - 1e-10;
 /// A bond on its limit softens if the load step would bring it there within this share.
 const AT_ONCE: f64 = 1e-3;
+/// Where a bond comes to its limit or breaks within this last share of a load step it counts as its end.
+const AT_END: f64 = 0.98;
+/// How often that is done in a load step.
+const MOST_CORNERS: usize = 2;
+/// Energy below which no load step is cut there, in first increments.
+const LEAST: f64 = 0.2;
 /// An elastic part of the way may take this share of the least increment.
 const NOTHING: f64 = 1e-6;
 
@@ -92,7 +99,7 @@ impl LoadPath<'_> {
             share *= 0.5;
             *cuts += 1;
         }
-        Err(last.unwrap_or(Failure::Mechanism { grains: Vec::new() }))
+        Err(last.unwrap_or_else(|| stuck(way)))
     }
 
     /// The next equilibrium in which softening has taken the next increment of energy.
@@ -108,29 +115,61 @@ impl LoadPath<'_> {
             .filter_map(|bond| bond.softening()?.room(&bond.stiffness, &bond.memory))
             .sum();
         let mut energy = self.steered.increment.min(ALMOST * room);
-        let mut last = None;
+        let (mut last, mut corners) = (None, 0);
         for cut in 0..=MOST_CUTS {
-            let solves = way.progress.iterations;
-            match self.try_energy(load_step, growth, energy, cut, way) {
+            let (solves, mut tried) = (way.progress.iterations, way.clone());
+            let found = self.try_energy(load_step, growth, energy, cut, &mut tried);
+            way.progress.iterations = tried.progress.iterations;
+            match found {
                 Ok((_, share)) if share >= 1.0 => {
                     if self.try_share(load_step, 1.0, energy, way).unwrap_or(false) {
                         return Ok(Reached::Factor);
                     }
                 }
                 Ok((point, share)) => {
-                    self.point = point;
-                    self.adapt(energy, way.progress.iterations - solves, cut);
-                    if self.break_worn(load_step, share, None, way) {
-                        return Ok(Reached::Separated);
+                    let corner = self.corner(&point, energy);
+                    if corner < AT_END && corners < MOST_CORNERS {
+                        energy *= corner;
+                        corners += 1;
+                        continue;
                     }
-                    return Ok(Reached::Share(share));
+                    (self.point, *way) = (point, tried);
+                    if corners == 0 {
+                        self.adapt(energy, way.progress.iterations - solves, cut);
+                    }
+                    let separated = self.break_worn(load_step, share, None, way);
+                    return Ok(if separated {
+                        Reached::Separated
+                    } else {
+                        Reached::Share(share)
+                    });
                 }
                 Err(failure) => last = Some(failure),
             }
             energy *= CUT;
             *cuts += 1;
         }
-        Err(last.unwrap_or(Failure::Mechanism { grains: Vec::new() }))
+        Err(last.unwrap_or_else(|| stuck(way)))
+    }
+
+    /// Share of the way to `point` at which a bond first comes to its limit or breaks, where the ledger is open.
+    fn corner(&self, point: &Point, energy: f64) -> f64 {
+        let open = self.left_open(&self.point, point);
+        if open <= CLOSED * energy || energy < LEAST * self.steered.bounds[0] {
+            return 1.0;
+        }
+        let bonds = self.point.configuration.bonds.values().iter();
+        let mut corner: f64 = 1.0;
+        for (before, after) in bonds.zip(point.configuration.bonds.values()) {
+            let Some(softening) = before.softening() else {
+                continue;
+            };
+            let (k, memory) = (&before.stiffness, &before.memory);
+            let [limit, broken] = softening.corners(after.displacement, k, memory);
+            let on_limit = softening.room(k, memory).is_some();
+            corner = corner.min(if on_limit { broken } else { limit.min(broken) });
+        }
+        corner
     }
 
     fn try_energy(
@@ -148,7 +187,7 @@ impl LoadPath<'_> {
             &[Iteration::Tangent]
         };
         let mut tried = way.clone();
-        let mut found = Err(Failure::Mechanism { grains: Vec::new() });
+        let mut found = Err(stuck(way));
         for &iteration in iterations {
             found = self.steered(
                 load_step,
@@ -203,5 +242,14 @@ impl LoadPath<'_> {
         if cut > 0 || energy == *increment {
             *increment = (energy * growth).min(largest);
         }
+    }
+}
+
+/// Balanced here, and no farther.
+fn stuck(way: &Way) -> Failure {
+    Failure::NotConverged {
+        iterations: way.progress.iterations,
+        residual: way.progress.residual,
+        at: BodyId(0),
     }
 }

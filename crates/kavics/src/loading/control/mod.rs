@@ -38,13 +38,13 @@ impl Default for PathControl {
     fn default() -> Self {
         Self {
             control: Control::Load,
-            most_steps: 1000,
+            most_steps: 2000,
         }
     }
 }
 
 /// Largest energy of one load step, in fracture energies of the mean softening bond.
-const LARGEST: f64 = 1.0;
+const LARGEST: f64 = 0.25;
 /// Its first value, and what a load step under load control may take.
 const FIRST: f64 = 0.05;
 

@@ -4,12 +4,14 @@ use super::Control;
 use crate::assembly::Assembly;
 use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::{Load, SolveError, Warning};
-use crate::loading::advance::{self, Way};
+use crate::loading::advance::{self, Point, Way};
 use crate::loading::load_path::LoadStep;
 use crate::loading::{LoadPath, Program};
 
 /// A softening bond with less than this share of its force left is broken, where the path lets it.
-const WORN: f64 = 1e-4;
+const WORN: f64 = 1e-3;
+/// A load step leaves open at most this share of the energy that softening takes in it.
+pub(super) const CLOSED: f64 = 2e-3;
 
 /// Where a steered load step has come to.
 pub(super) enum Reached {
@@ -104,7 +106,8 @@ impl LoadPath<'_> {
         self.ended = true;
     }
 
-    /// Under load control to a share of the load step. Kept if it balances and softening takes no more than `most`.
+    /// Under load control to a share of the load step. Kept if it balances, softening takes no more than `most`, and
+    /// no bond comes to its limit or breaks halfway, which would leave the ledger open.
     pub(super) fn try_share(
         &mut self,
         load_step: &LoadStep,
@@ -114,12 +117,20 @@ impl LoadPath<'_> {
     ) -> Result<bool, Failure> {
         let (before, mut tried) = (self.point.clone(), way.clone());
         self.attempt(load_step, share, &mut tried)?;
-        if tried.softened - way.softened > most {
+        let softened = tried.softened - way.softened;
+        if softened > most || self.left_open(&before, &self.point) > CLOSED * softened {
             self.point = before;
             return Ok(false);
         }
         *way = tried;
         Ok(true)
+    }
+
+    /// What the ledger leaves open between two points.
+    pub(super) fn left_open(&self, before: &Point, after: &Point) -> f64 {
+        let rounding = 1e-12 * self.point.energy.external_work.abs();
+        let open = after.energy.ledger_error() - before.energy.ledger_error();
+        (open.abs() - rounding).max(0.0)
     }
 
     /// Breaks the bonds that are as good as broken; answers whether that separates the assembly.
