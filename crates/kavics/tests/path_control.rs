@@ -343,10 +343,7 @@ fn a_path_ends_at_the_number_of_steps_that_the_scene_allows() {
     let (path, error) = follow(&assembly, &program, Control::Auto, 1);
     assert_eq!(path.len(), 6);
     let error = error.expect("an error");
-    assert!(matches!(
-        error,
-        SolveError::MostSteps { most_steps: 5, .. }
-    ));
+    assert!(matches!(error, SolveError::MostSteps { most_steps: 5, .. }));
     let text = "load step 6: 5 load steps of stage `pull` end at load factor";
     assert!(error.to_string().starts_with(text), "{error}");
 }

@@ -23,6 +23,7 @@ pub struct Stiffness {
 
 impl Stiffness {
     /// With the limits at which the bond begins to soften multiplied by its strength factor.
+    #[must_use]
     pub fn with_strength_factor(mut self, factor: f64) -> Self {
         if let Some(softening) = &mut self.softening {
             softening.limits = softening.limits.scaled(factor);

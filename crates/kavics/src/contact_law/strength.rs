@@ -25,6 +25,7 @@ impl Limits {
     };
 
     /// All limits multiplied by a factor.
+    #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             tension: self.tension * factor,

@@ -127,8 +127,7 @@ impl System<'_> {
         progress: &mut Progress,
     ) -> Result<f64, Failure> {
         let most = MOST_ITERATIONS[usize::from(steering.iteration == Iteration::Secant)];
-        let mut left = most;
-        loop {
+        for left in (0..=most).rev() {
             let action = steering.action(share);
             for &(body, freedom, value) in &action.moved {
                 *configuration.displacements[body].component_mut(freedom) = value;
@@ -138,41 +137,46 @@ impl System<'_> {
             progress.residual = imbalance.residual(self.noise());
             self.keep_iterate(configuration, progress);
             let equation = self.equation(configuration, steering);
-            let holds = equation.value.abs() <= AIMED * steering.aim.size();
             // Where all forces vanish, the rounding of the displacements does not.
             let balanced =
                 progress.residual <= self.settings.tolerance || imbalance.largest <= self.noise();
-            if balanced && holds {
+            if balanced && equation.value.abs() <= AIMED * steering.aim.size() {
                 return Ok(share);
             }
             let failure = not_converged(progress, &imbalance);
             if left == 0 || !imbalance.largest.is_finite() {
                 return Err(failure);
             }
-            left -= 1;
-            let pattern = self.pattern(configuration, steering.growth, steering.iteration);
-            let Ok([answer, rate]) = self.solve_pair(
-                configuration,
-                [&imbalance.unbalanced, &pattern],
-                steering.iteration,
-                progress,
-            ) else {
-                return Err(failure);
-            };
-            let by_share =
-                self.work_on(&equation.slope, &rate) + moved_work(&equation.slope, steering.growth);
-            let step = -(equation.value + self.work_on(&equation.slope, &answer)) / by_share;
-            if !step.is_finite() {
-                return Err(failure);
-            }
+            let unbalanced = &imbalance.unbalanced;
+            let (step, change) = self
+                .steered_step(configuration, steering, &equation, unbalanced, progress)
+                .ok_or(failure)?;
             share += step;
-            let together: Vec<f64> = answer
-                .iter()
-                .zip(&rate)
-                .map(|(a, b)| a + step * b)
-                .collect();
-            self.advance(configuration, &together);
+            self.advance(configuration, &change);
         }
+        unreachable!("the last iteration answers")
+    }
+
+    /// One linear solve of the bordered system: the changes of the share and of the displacements.
+    fn steered_step(
+        &mut self,
+        configuration: &Configuration,
+        steering: Steering<'_>,
+        equation: &Equation,
+        unbalanced: &PerBody<Load>,
+        progress: &mut Progress,
+    ) -> Option<(f64, Vec<f64>)> {
+        let Steering {
+            growth, iteration, ..
+        } = steering;
+        let pattern = self.pattern(configuration, growth, iteration);
+        let sides = [unbalanced, &pattern];
+        let solved = self.solve_pair(configuration, sides, iteration, progress);
+        let [answer, rate] = solved.ok()?;
+        let by_share = self.work_on(&equation.slope, &rate) + moved_work(&equation.slope, growth);
+        let step = -(equation.value + self.work_on(&equation.slope, &answer)) / by_share;
+        let change = answer.iter().zip(&rate).map(|(a, b)| a + step * b);
+        step.is_finite().then(|| (step, change.collect()))
     }
 
     fn equation(&self, configuration: &Configuration, steering: Steering<'_>) -> Equation {
