@@ -58,6 +58,9 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::WorkError { relative } => {
             format!("work and energies known to within {relative:.0e} of the work")
         }
+        Warning::Separated => {
+            "separated: the loads fell to zero; what would follow is left out".to_owned()
+        }
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
     format!("load step{plural} {}: {what}", ranges(steps))
@@ -68,6 +71,7 @@ fn count(warning: &Warning) -> usize {
         Warning::RegularisedPivots { count } => *count,
         Warning::SolvedDirectly { .. } => 1,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
+        Warning::Separated => 1,
         Warning::WorkError { .. } => 0,
     }
 }

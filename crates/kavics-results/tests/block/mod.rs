@@ -71,6 +71,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         },
         settings: Settings::default(),
         breakage: Breakage::default(),
+        control: kavics::loading::PathControl::default(),
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
         record_voids: false,

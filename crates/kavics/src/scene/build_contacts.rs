@@ -2,6 +2,7 @@
 
 use super::build_grains::PlacedGrains;
 use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
+use super::check_softening;
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::sides::side_called;
@@ -48,6 +49,7 @@ pub fn assembly(
     };
     if dual_lengths(plan, &assembly, checker) {
         tension_limits(plan, &assembly, checker);
+        check_softening::brittle_bonds(&plan.properties, &assembly, checker);
     }
     Some(assembly)
 }
@@ -277,7 +279,7 @@ fn without_property(
     );
 }
 
-fn partners(first: Partner, second: Partner) -> String {
+pub fn partners(first: Partner, second: Partner) -> String {
     match (first, second) {
         (Partner::Grain(first), Partner::Grain(second)) => format!("grains {first} and {second}"),
         (Partner::Grain(grain), Partner::Side(side))

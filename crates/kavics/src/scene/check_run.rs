@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::check_contacts::{Ranges, optional_range};
+use super::check_control;
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
@@ -10,7 +11,7 @@ use super::named_file::named_file;
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity, ValueOr};
 use crate::equilibrium::{Iteration, Settings, SolverChoice};
-use crate::loading::Breakage;
+use crate::loading::{Breakage, PathControl};
 
 /// How a scene is solved, measured and recorded.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct RunPlan {
     pub settings: Settings,
     /// When contacts break.
     pub breakage: Breakage,
+    /// What steers the load steps.
+    pub control: PathControl,
     /// What is measured.
     pub window: WindowPlan,
     /// Grains and contacts are recorded every so many load steps.
@@ -52,6 +55,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let measure = file.measure.as_ref();
     let measure = measure.map_or(&default.1, |table| &table.value);
     let solving = solving(equilibrium, checker);
+    let control = check_control::control(file, equilibrium, checker);
     let window = window(measure, checker);
     let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
         checker.word(word, "every", &[("step", false), ("iteration", true)])
@@ -75,6 +79,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
             ..settings
         },
         breakage,
+        control: control?,
         window: window?,
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
@@ -114,19 +119,6 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
             ];
             checker.word(word, "iteration", &choices)
         });
-    let available = |word: &Option<Placed<String>>,
-                     key: &str,
-                     choices: &[(&str, bool)],
-                     checker: &mut Checker| {
-        let Some(word) = word else {
-            return Some(());
-        };
-        if checker.word(word, key, choices)? {
-            return Some(());
-        }
-        checker.refuse(&word.span, &format!("`{key} = \"{}\"`", word.value));
-        None
-    };
     let solver = file.solver.as_ref().map_or(Some(default.solver), |word| {
         let choices = [
             ("auto", SolverChoice::Auto),
@@ -135,15 +127,7 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         ];
         checker.word(word, "solver", &choices)
     });
-    let controls = [
-        ("load", true),
-        ("displacement", false),
-        ("dissipation", false),
-        ("auto", false),
-    ];
-    let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
-    control?;
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,

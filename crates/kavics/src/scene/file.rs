@@ -230,8 +230,10 @@ pub struct EquilibriumFile {
     pub work_tolerance: Option<Number>,
     /// "auto" (when absent) or "direct".
     pub solver: Option<Placed<String>>,
-    /// "load".
+    /// "load" (when absent), "displacement", "dissipation" or "auto".
     pub control: Option<Placed<String>>,
+    /// Load steps that a stage may take beyond the number of its factors; 2000 when absent.
+    pub most_steps: Option<Placed<i64>>,
 }
 
 /// What is measured.
