@@ -8,7 +8,7 @@ use std::array::from_fn;
 use super::panels::{Panel, Panels};
 
 /// Sums that are carried side by side, for the processor to add several numbers at once.
-const LANES: usize = 8;
+const LANES: usize = 4;
 
 /// Values of a panel that are fetched ahead.
 const AHEAD: usize = 8192;
@@ -83,27 +83,63 @@ fn subtract<const W: usize>(x: &mut [f64], columns: &[&[f64]; W], factors: [f64;
 
 /// The way back through a panel: x ← L⁻ᵀD⁻¹x.
 pub(super) fn backward<const R: usize>(panel: &Panel, values: &[f64], local: &mut [f64]) {
-    for column in (0..panel.columns).rev() {
-        let values = &values[column * panel.rows + column..(column + 1) * panel.rows];
+    let mut end = panel.columns;
+    while end > 0 {
+        let width = width(end);
+        end -= width;
         for x in local.chunks_exact_mut(panel.rows).take(R) {
-            let known = product(&values[1..], &x[column + 1..]);
-            x[column] = x[column] / values[0] - known;
+            match width {
+                4 => backward_columns::<4>(panel.rows, end, values, x),
+                3 => backward_columns::<3>(panel.rows, end, values, x),
+                2 => backward_columns::<2>(panel.rows, end, values, x),
+                _ => backward_columns::<1>(panel.rows, end, values, x),
+            }
         }
     }
 }
 
-fn product(column: &[f64], x: &[f64]) -> f64 {
-    let ((column, column_rest), (x, x_rest)) =
-        (column.as_chunks::<LANES>(), x.as_chunks::<LANES>());
-    let mut sums = [0.0; LANES];
-    for (column, x) in column.iter().zip(x) {
-        for lane in 0..LANES {
-            sums[lane] += column[lane] * x[lane];
+fn backward_columns<const W: usize>(rows: usize, first: usize, values: &[f64], x: &mut [f64]) {
+    let below = first + W;
+    let (own, x) = x.split_at_mut(below);
+    let own = &mut own[first..];
+    let columns: [&[f64]; W] = from_fn(|j| &values[(first + j) * rows + below..][..x.len()]);
+    let products = products(columns, x);
+    for j in (0..W).rev() {
+        let column = &values[(first + j) * rows + first..];
+        let mut sum = own[j] / column[j] - products[j];
+        for i in j + 1..W {
+            sum -= column[i] * own[i];
+        }
+        own[j] = sum;
+    }
+}
+
+/// The product of each column with a vector.
+fn products<const W: usize>(columns: [&[f64]; W], x: &[f64]) -> [f64; W] {
+    let sums = sums_of_products(columns, x);
+    let whole = x.len() - x.len() % LANES;
+    from_fn(|j| {
+        let rest = columns[j][whole..].iter().zip(&x[whole..]);
+        let [a, b, c, d] = sums[j];
+        (a + c) + (b + d) + rest.map(|(value, x)| value * x).sum::<f64>()
+    })
+}
+
+/// Sums side by side, of every fourth product. Not to be inlined: seen with what is done to the sums, the compiler takes
+/// numbers of different columns together, which are not neighbours in memory.
+#[inline(never)]
+fn sums_of_products<const W: usize>(columns: [&[f64]; W], x: &[f64]) -> [[f64; LANES]; W] {
+    let x = x.as_chunks::<LANES>().0;
+    let columns = columns.map(|column| &column.as_chunks::<LANES>().0[..x.len()]);
+    let mut sums = [[0.0; LANES]; W];
+    for i in 0..x.len() {
+        for j in 0..W {
+            for lane in 0..LANES {
+                sums[j][lane] += columns[j][i][lane] * x[i][lane];
+            }
         }
     }
-    let rest = column_rest.iter().zip(x_rest).map(|(l, x)| l * x);
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + e) + (c + g)) + ((b + f) + (d + h)) + rest.sum::<f64>()
+    sums
 }
 
 /// Solves with L for R vectors of the whole length, one behind the other.
