@@ -111,6 +111,20 @@ fn tension_ends_with_two_pieces() {
     assert!(events.texts("kind").expect("kinds").contains(&"broke"));
 }
 
+/// A narrower block than the scene's, for the time it takes.
+#[test]
+fn softening_goes_past_its_peak_to_separation() {
+    let scene = workspace().join("scenes/softening.toml");
+    let narrower = ["box.width=12.0", "grains.dropped.count=160"];
+    let run = Run::of("run", &scene, &["--set", narrower[0], "--set", narrower[1]]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("separated"), "{}", run.stderr);
+    let (factor, error) = (run.steps("load_factor"), run.steps("ledger_error"));
+    let work = largest(&run.steps("external_work"));
+    assert!(factor.last() == Some(&0.0) && largest(&factor) > 1.0);
+    assert!(largest(&error) < 1e-3 * work, "{} {work}", largest(&error));
+}
+
 #[test]
 fn shear_breaks_contacts_under_a_constant_weight() {
     let run = done("shear.toml");

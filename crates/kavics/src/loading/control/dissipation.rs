@@ -25,7 +25,7 @@ const AT_ONCE: f64 = 1e-3;
 const AT_END: f64 = 0.98;
 /// How often that is done in a load step.
 const MOST_CORNERS: usize = 2;
-/// Energy below which no load step is cut there, in first increments.
+/// Energy below which no load step is cut there, in first increments: the straight way to a corner may be a poor guess.
 const LEAST: f64 = 0.2;
 /// An elastic part of the way may take this share of the least increment.
 const NOTHING: f64 = 1e-6;
@@ -115,6 +115,7 @@ impl LoadPath<'_> {
             .filter_map(|bond| bond.softening()?.room(&bond.stiffness, &bond.memory))
             .sum();
         let mut energy = self.steered.increment.min(ALMOST * room);
+        let least = LEAST * self.steered.bounds[0];
         let (mut last, mut corners) = (None, 0);
         for cut in 0..=MOST_CUTS {
             let (solves, mut tried) = (way.progress.iterations, way.clone());
@@ -129,7 +130,7 @@ impl LoadPath<'_> {
                 Ok((point, share)) => {
                     let corner = self.corner(&point, energy);
                     if corner < AT_END && corners < MOST_CORNERS {
-                        energy *= corner;
+                        energy = least.max(energy * corner);
                         corners += 1;
                         continue;
                     }
@@ -155,7 +156,7 @@ impl LoadPath<'_> {
     /// Share of the way to `point` at which a bond first comes to its limit or breaks, where the ledger is open.
     fn corner(&self, point: &Point, energy: f64) -> f64 {
         let open = self.left_open(&self.point, point);
-        if open <= CLOSED * energy || energy < LEAST * self.steered.bounds[0] {
+        if open <= CLOSED * energy || energy <= LEAST * self.steered.bounds[0] {
             return 1.0;
         }
         let bonds = self.point.configuration.bonds.values().iter();
