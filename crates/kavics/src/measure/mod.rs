@@ -137,7 +137,7 @@ pub struct Measures {
     pub macroscopic_work: Option<f64>,
     /// Hill's boundary term: contact work less macroscopic work, from the forces on the window's grains, `[force·length]`.
     pub boundary_work: Option<f64>,
-    /// Tangent moduli; [`measures`] leaves them out, as they need the tangents of the contacts: see [`moduli`].
+    /// Tangent moduli; [`measures`] leaves them out, as they need the tangents of the contacts.
     pub moduli: Option<Moduli>,
 }
 

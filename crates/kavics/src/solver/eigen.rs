@@ -124,24 +124,24 @@ impl EigenProblem<'_> {
     fn by_krylov(&self, count: usize) -> Result<Eigenpairs, Singular> {
         let mut basis = Basis::new(self);
         let mut slices = self.slices(count)?;
-        while let Some((shift, wanted)) = slices.pop() {
-            let (mut solver, _) = self.factor(shift)?;
+        while let Some((mut solver, wanted)) = slices.pop() {
             basis = basis.with_lowest(&mut solver, wanted)?;
         }
         Ok(basis.into_eigenpairs())
     }
 
-    /// Shifts, the first just below zero, the others farther below until nothing lies below; and how many eigenvalues are to
-    /// be known with each of them, those below it included.
-    fn slices(&self, count: usize) -> Result<Vec<(f64, usize)>, Singular> {
+    /// Factors of K − σD with shifts σ, the first just below zero, the others farther below until nothing lies below; and how
+    /// many eigenvalues are to be known with each of them, those below it included.
+    fn slices(&self, count: usize) -> Result<Vec<(SymmetricSolver, usize)>, Singular> {
         let (mut shift, mut wanted) = (-SHIFT * self.scale, count);
         let mut slices = Vec::new();
         while wanted > 0 {
             if slices.len() == MOST_SHIFTS {
                 return Err(Singular);
             }
-            slices.push((shift, wanted));
-            wanted = wanted.min(self.count_below(shift)?);
+            let (solver, below) = self.factor(shift)?;
+            slices.push((solver, wanted));
+            wanted = wanted.min(below);
             shift *= 10.0;
         }
         Ok(slices)
