@@ -89,8 +89,9 @@ fn push(
         results.push_iterate(equilibrium, iterate, &measures);
     }
     let snapshot = snapshot(scene, equilibrium, &equilibrium.state);
-    let measures = measures(&snapshot, window);
-    results.push(equilibrium, &measures, &grain_stress(&snapshot))?;
+    let (measures, stress) =
+        rayon::join(|| measures(&snapshot, window), || grain_stress(&snapshot));
+    results.push(equilibrium, &measures, &stress)?;
     Ok(())
 }
 

@@ -226,7 +226,7 @@ pub struct EquilibriumFile {
     pub breakage: Option<Placed<String>>,
     /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
     pub tie_tolerance: Option<Number>,
-    /// "auto" (when absent) or "direct".
+    /// "auto" (when absent), "direct" or "iterative".
     pub solver: Option<Placed<String>>,
     /// "load".
     pub control: Option<Placed<String>>,

@@ -15,7 +15,7 @@ const LARGEST_EIGENVALUE: f64 = 2.0;
 /// Iterations at most.
 const MOST_ITERATIONS: usize = 500;
 /// The residual has to halve within so many iterations.
-const PATIENCE: usize = 60;
+const PATIENCE: usize = 40;
 /// A hierarchy that needs this many times the iterations that it needed when new, and ten more, is renewed.
 const WORN: usize = 2;
 
