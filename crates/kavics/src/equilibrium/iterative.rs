@@ -16,7 +16,7 @@ const MANY: usize = 1_000_000;
 const SHARE: f64 = 0.1;
 /// Where the matrix depends on the state, a step need not be better than this.
 const STEP: f64 = 1e-4;
-/// An iteration that gains no more has served if it came so far.
+/// An iteration has served if it left no more than this share of the residual.
 const SERVED: f64 = 1e-3;
 
 /// Contacts that are hashed together.
@@ -117,7 +117,8 @@ impl System<'_> {
         };
         match solution.end {
             Iterated::NegativeCurvature => return Err(Breakdown::NotPositive),
-            Iterated::Stagnated if solution.gain.is_nan() || solution.gain > SERVED => {
+            // Along a floppy mode the iteration may think that it converged.
+            _ if solution.gain.is_nan() || solution.gain > SERVED => {
                 return Err(Breakdown::Stagnated);
             }
             _ => {}
