@@ -179,7 +179,9 @@ impl System<'_> {
                     if bond.is_active() && !set_aside[frame.first.index()] {
                         let stiffness = stiffness_of(bond, properties, iteration);
                         let words = stiffness.as_flattened().iter();
-                        words.for_each(|value| part.add(value.to_bits()));
+                        for value in words {
+                            part.add(value.to_bits());
+                        }
                     } else {
                         part.add(1);
                     }
@@ -188,7 +190,9 @@ impl System<'_> {
             })
             .collect();
         let mut whole = Fingerprint::default();
-        parts.into_iter().for_each(|part| whole.add(part));
+        for part in parts {
+            whole.add(part);
+        }
         whole.0
     }
 }
