@@ -90,11 +90,14 @@ fn push(
     }
     let snapshot = snapshot(scene, equilibrium, &equilibrium.state);
     let tangents = equilibrium.tangents.as_ref();
-    let measures = Measures {
-        moduli: tangents.and_then(|tangents| moduli(&scene.assembly, tangents, window)),
-        ..measures(&snapshot, window)
-    };
-    results.push(equilibrium, &measures, &grain_stress(&snapshot))?;
+    let (measures, stress) = rayon::join(
+        || Measures {
+            moduli: tangents.and_then(|tangents| moduli(&scene.assembly, tangents, window)),
+            ..measures(&snapshot, window)
+        },
+        || grain_stress(&snapshot),
+    );
+    results.push(equilibrium, &measures, &stress)?;
     Ok(())
 }
 

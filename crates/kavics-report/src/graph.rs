@@ -177,7 +177,9 @@ impl Lines {
 
 /// The largest normal force, by size, in a recorded load step.
 pub(crate) fn largest_force(folder: &ResultsFolder, step: usize) -> Result<f64, ReportError> {
-    let forces = folder.contacts(step)?.numbers("normal_force")?;
+    let forces = folder
+        .some_of_contacts(step, &["normal_force"])?
+        .numbers("normal_force")?;
     Ok(forces.into_iter().map(f64::abs).fold(0.0, f64::max))
 }
 

@@ -38,11 +38,11 @@ pub(crate) fn figures(folder: &ResultsFolder) -> Result<Vec<Figure>, ReportError
         return Ok(Vec::new());
     }
     let record = folder.record()?.packing.unwrap_or_default();
-    let grains = grains(&folder.grains(0)?)?;
+    let grains = grains(&folder.some_of_grains(0, &["x", "y", "radius"])?)?;
     if grains.is_empty() {
         return Ok(Vec::new());
     }
-    let contacts = contacts(&folder.contacts(0)?)?;
+    let contacts = contacts(&folder.some_of_contacts(0, &["first", "second", "nx", "ny"])?)?;
     let mut figures = vec![sieve(&grains, &record)];
     figures.extend(over_height(&grains, &record));
     figures.push(coordination(grains.len(), &contacts));

@@ -14,7 +14,8 @@ use crate::moduli;
 use crate::number::{brief, fixed, show};
 use crate::{Comparison, ReportError};
 
-/// Pictures of the contact graph, at most; and contacts in all of them together, so that the page stays small.
+/// Pictures of the contact graph, at most; and contacts in all of them together, so that the page stays small: none
+/// of an assembly with more.
 const PICTURES: usize = 6;
 const CONTACTS_DRAWN: usize = 900_000;
 
@@ -151,7 +152,7 @@ fn pictures(
     events: &Columns,
 ) -> Result<(Vec<Picture>, f64), ReportError> {
     let affordable = CONTACTS_DRAWN / record.contacts.max(1);
-    let chosen = chosen_steps(folder, steps, affordable.clamp(1, PICTURES))?;
+    let chosen = chosen_steps(folder, steps, affordable.min(PICTURES))?;
     let mut largest = 0.0_f64;
     for &step in &chosen {
         largest = largest.max(graph::largest_force(folder, step)?);

@@ -42,8 +42,8 @@ impl Unit {
     }
 }
 
-type ReadValue<R, T> = dyn Fn(&R) -> Option<T>;
-type ReadText<R> = dyn for<'row> Fn(&'row R) -> Option<&'row str>;
+type ReadValue<R, T> = dyn Fn(&R) -> Option<T> + Send + Sync;
+type ReadText<R> = dyn for<'row> Fn(&'row R) -> Option<&'row str> + Send + Sync;
 
 /// How a column is read from a row.
 pub(crate) enum Read<R> {
@@ -63,12 +63,15 @@ pub struct Column<R> {
 
 impl<R> Column<R> {
     /// A column of counts or ids.
-    pub(crate) fn integer(name: &str, read: impl Fn(&R) -> i64 + 'static) -> Self {
+    pub(crate) fn integer(name: &str, read: impl Fn(&R) -> i64 + Send + Sync + 'static) -> Self {
         Self::maybe_integer(name, move |row| Some(read(row)))
     }
 
     /// A column of counts or ids that need not exist.
-    pub(crate) fn maybe_integer(name: &str, read: impl Fn(&R) -> Option<i64> + 'static) -> Self {
+    pub(crate) fn maybe_integer(
+        name: &str,
+        read: impl Fn(&R) -> Option<i64> + Send + Sync + 'static,
+    ) -> Self {
         Self {
             name: name.to_owned(),
             unit: Unit::None,
@@ -77,7 +80,11 @@ impl<R> Column<R> {
     }
 
     /// A column of numbers.
-    pub(crate) fn number(name: &str, unit: Unit, read: impl Fn(&R) -> f64 + 'static) -> Self {
+    pub(crate) fn number(
+        name: &str,
+        unit: Unit,
+        read: impl Fn(&R) -> f64 + Send + Sync + 'static,
+    ) -> Self {
         Self::maybe_number(name, unit, move |row| Some(read(row)))
     }
 
@@ -85,7 +92,7 @@ impl<R> Column<R> {
     pub(crate) fn maybe_number(
         name: &str,
         unit: Unit,
-        read: impl Fn(&R) -> Option<f64> + 'static,
+        read: impl Fn(&R) -> Option<f64> + Send + Sync + 'static,
     ) -> Self {
         Self {
             name: name.to_owned(),
@@ -97,7 +104,7 @@ impl<R> Column<R> {
     /// A column of words that need not exist.
     pub(crate) fn text(
         name: &str,
-        read: impl for<'row> Fn(&'row R) -> Option<&'row str> + 'static,
+        read: impl for<'row> Fn(&'row R) -> Option<&'row str> + Send + Sync + 'static,
     ) -> Self {
         Self {
             name: name.to_owned(),

@@ -1,18 +1,22 @@
 //! From rows and columns to Parquet, and from bytes to a file published whole.
 
 use std::collections::HashMap;
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use atomic_write_file::AtomicWriteFile;
 use parquet::arrow::ArrowWriter;
+use parquet::arrow::arrow_writer::{ArrowColumnChunk, ArrowColumnWriter, compute_leaves};
 use parquet::basic::Compression;
+use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::schema::types::ColumnPath;
+use rayon::prelude::*;
 
 use crate::ResultsError;
 use crate::column::{Column, Read};
@@ -20,24 +24,52 @@ use crate::column::{Column, Read};
 /// Rows that are encoded together: few enough that long tables need little memory beside their file.
 const ROWS_A_GROUP: usize = 1 << 16;
 
-/// The rows as a Parquet file: the same bytes for the same rows.
-pub(crate) fn encode<R>(
+/// Writes rows as a Parquet file, the same bytes for the same rows; `some` gives those of a range. Columns are encoded
+/// side by side.
+fn encode<R: Sync, G: AsRef<[R]>>(
     path: &Path,
+    to: impl Write + Send,
     columns: &[Column<R>],
-    rows: &[R],
-) -> Result<Vec<u8>, ResultsError> {
+    count: usize,
+    some: impl Fn(Range<usize>) -> G,
+) -> Result<(), ResultsError> {
     let fields: Vec<Field> = columns.iter().map(field).collect();
     let schema = Arc::new(Schema::new(fields));
-    let mut writer =
-        ArrowWriter::try_new(Vec::new(), Arc::clone(&schema), Some(properties(columns)))
-            .map_err(ResultsError::table(path))?;
-    for some in rows.chunks(ROWS_A_GROUP) {
-        let arrays = columns.iter().map(|column| array(column, some)).collect();
-        let batch =
-            RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(ResultsError::table(path))?;
-        writer.write(&batch).map_err(ResultsError::table(path))?;
-    }
-    writer.into_inner().map_err(ResultsError::table(path))
+    let write = || {
+        let writer = ArrowWriter::try_new(to, Arc::clone(&schema), Some(properties(columns)))?;
+        let (mut file, factory) = writer.into_serialized_writer()?;
+        for (number, first) in (0..count).step_by(ROWS_A_GROUP).enumerate() {
+            let rows = some(first..count.min(first + ROWS_A_GROUP));
+            let writers = factory.create_column_writers(number)?;
+            let chunks = encoded_columns(columns, &schema, rows.as_ref(), writers)?;
+            let mut group = file.next_row_group()?;
+            for chunk in chunks {
+                chunk.append_to_row_group(&mut group)?;
+            }
+            group.close()?;
+        }
+        file.close().map(|_| ())
+    };
+    write().map_err(ResultsError::table(path))
+}
+
+/// The columns of some rows, each encoded.
+fn encoded_columns<R: Sync>(
+    columns: &[Column<R>],
+    schema: &Schema,
+    rows: &[R],
+    writers: Vec<ArrowColumnWriter>,
+) -> Result<Vec<ArrowColumnChunk>, ParquetError> {
+    let tasks = columns.par_iter().zip(schema.fields().par_iter());
+    tasks
+        .zip(writers)
+        .map(|((column, field), mut writer)| {
+            for leaf in compute_leaves(field, &array(column, rows))? {
+                writer.write(&leaf)?;
+            }
+            writer.close()
+        })
+        .collect()
 }
 
 fn field<R>(column: &Column<R>) -> Field {
@@ -106,28 +138,49 @@ impl Format {
 /// # Errors
 /// A file that cannot be written.
 pub fn publish(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
-    let write = || match (fs::metadata(path), fs::symlink_metadata(path)) {
-        (Ok(found), _) if !found.is_file() => {
-            OpenOptions::new().write(true).open(path)?.write_all(bytes)
-        }
-        (Ok(_), _) => replace(&fs::canonicalize(path)?, bytes),
-        (Err(_), Ok(_)) => fs::write(path, bytes),
-        (Err(_), Err(_)) => replace(path, bytes),
-    };
-    write().map_err(ResultsError::unwritable(path))
+    publish_by(path, |file| {
+        file.write_all(bytes)
+            .map_err(ResultsError::unwritable(path))
+    })
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = AtomicWriteFile::open(path)?;
-    file.write_all(bytes)?;
-    file.commit()
+/// The same for a file that `write` writes.
+fn publish_by(
+    path: &Path,
+    write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ResultsError>,
+) -> Result<(), ResultsError> {
+    let unwritable = || ResultsError::unwritable(path);
+    match (fs::metadata(path), fs::symlink_metadata(path)) {
+        (Ok(found), _) if !found.is_file() => {
+            let file = OpenOptions::new().write(true).open(path);
+            write(&mut file.map_err(unwritable())?)
+        }
+        (Err(_), Ok(_)) => write(&mut File::create(path).map_err(unwritable())?),
+        (found, _) => {
+            let target = found.and_then(|_| fs::canonicalize(path));
+            let target = target.unwrap_or_else(|_| path.to_owned());
+            let mut file = AtomicWriteFile::open(&target).map_err(unwritable())?;
+            write(&mut file)?;
+            file.commit().map_err(unwritable())
+        }
+    }
 }
 
 /// Encodes rows and publishes them.
-pub(crate) fn publish_table<R>(
+pub(crate) fn publish_table<R: Sync>(
     path: &Path,
     columns: &[Column<R>],
     rows: &[R],
 ) -> Result<(), ResultsError> {
-    publish(path, &encode(path, columns, rows)?)
+    publish_rows(path, columns, rows.len(), |range| &rows[range])
+}
+
+/// Encodes and publishes rows of which only some stand in memory at a time: `some` gives those of a range.
+pub(crate) fn publish_rows<R: Sync, G: AsRef<[R]>>(
+    path: &Path,
+    columns: &[Column<R>],
+    count: usize,
+    some: impl Fn(Range<usize>) -> G,
+) -> Result<(), ResultsError> {
+    publish_by(path, |file| encode(path, file, columns, count, some))
 }

@@ -7,6 +7,7 @@ use arrow_array::cast::AsArray;
 use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, SchemaRef};
+use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
 use crate::ResultsError;
@@ -28,9 +29,20 @@ impl Columns {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        Self::read_some(path, None)
+    }
+
+    /// Reads the named columns only, where there are names.
+    fn read_some(path: &Path, names: Option<&[&str]>) -> Result<Self, ResultsError> {
         let file = File::open(path).map_err(ResultsError::unreadable(path))?;
         let reader = ParquetRecordBatchReaderBuilder::try_new(file)
-            .and_then(|builder| builder.with_batch_size(1 << 16).build())
+            .and_then(|builder| {
+                let mask = names.map_or_else(ProjectionMask::all, |names| {
+                    ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
+                });
+                let builder = builder.with_projection(mask);
+                builder.with_batch_size(1 << 16).build()
+            })
             .map_err(ResultsError::table(path))?;
         let schema = reader.schema();
         let batches = reader
@@ -226,6 +238,22 @@ impl ResultsFolder {
     /// A table that cannot be read.
     pub fn grains(&self, step: usize) -> Result<Columns, ResultsError> {
         self.recorded("grains", step)
+    }
+
+    /// Some columns of the table `grains` at a recorded load step.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn some_of_grains(&self, step: usize, names: &[&str]) -> Result<Columns, ResultsError> {
+        Columns::read_some(&recorded_path(&self.path, "grains", step), Some(names))
+    }
+
+    /// Some columns of the table `contacts` at a recorded load step.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn some_of_contacts(&self, step: usize, names: &[&str]) -> Result<Columns, ResultsError> {
+        Columns::read_some(&recorded_path(&self.path, "contacts", step), Some(names))
     }
 
     /// The table `contacts` at a recorded load step.

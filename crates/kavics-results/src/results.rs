@@ -1,12 +1,13 @@
 //! Writing a results folder, one equilibrium after the other.
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use kavics::assembly::{Grain, Partner, Side};
+use kavics::assembly::{Partner, Side};
 use kavics::equilibrium::{Equilibrium, EventKind, Iterate, Load, State};
-use kavics::ids::{BodyId, GrainId, Id, PerBody, PerGrain, SideId};
+use kavics::ids::{BodyId, ContactId, GrainId, Id, PerBody, PerGrain, SideId};
 use kavics::measure::{Measures, Snapshot, Tensor, cracks, void_cells};
 use kavics::scene::Scene;
 
@@ -14,7 +15,7 @@ use crate::ResultsError;
 use crate::actions::{ActionRow, Actions, action_columns};
 use crate::contacts::{ContactRow, contact_columns};
 use crate::cracks::{crack_columns, crack_rows};
-use crate::encode::{publish, publish_table};
+use crate::encode::{publish, publish_rows, publish_table};
 use crate::events::{EventRow, event_columns};
 use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
@@ -261,10 +262,17 @@ impl<'a> Results<'a> {
         grain_stress: &PerGrain<Tensor>,
     ) -> Result<(), ResultsError> {
         let path = |table| recorded_path(&self.folder, table, equilibrium.step);
-        let grains = self.grain_rows(equilibrium, grain_stress);
-        publish_table(&path("grains"), &grain_columns(), &grains)?;
-        let contacts = self.contact_rows(equilibrium);
-        publish_table(&path("contacts"), &contact_columns(), &contacts)?;
+        let assembly = &self.scene.assembly;
+        let active = self.active_contacts(&equilibrium.state);
+        let grains = |range| self.grain_rows(range, equilibrium, grain_stress, &active);
+        let (count, columns) = (assembly.grains.len(), grain_columns());
+        let write_grains = || publish_rows(&path("grains"), &columns, count, grains);
+        let contacts = |range| self.contact_rows(range, equilibrium);
+        let (count, columns) = (assembly.contacts.len(), contact_columns());
+        let write_contacts = || publish_rows(&path("contacts"), &columns, count, contacts);
+        let (grains, contacts) = rayon::join(write_grains, write_contacts);
+        grains?;
+        contacts?;
         let sides = self.side_rows(equilibrium);
         publish_table(&path("sides"), &side_columns(), &sides)?;
         let snapshot = Snapshot::new(&self.scene.assembly, equilibrium);
@@ -285,17 +293,18 @@ impl<'a> Results<'a> {
 
     fn grain_rows(
         &self,
+        range: Range<usize>,
         equilibrium: &Equilibrium,
         grain_stress: &PerGrain<Tensor>,
+        contacts: &PerGrain<usize>,
     ) -> Vec<GrainRow> {
         let assembly = &self.scene.assembly;
-        let contacts = self.active_contacts(&equilibrium.state);
-        let row = |(id, grain): (GrainId, &Grain)| {
+        let row = |id: GrainId| {
             let body = assembly.body(Partner::Grain(id));
             GrainRow {
                 step: equilibrium.step,
                 id: id.index(),
-                grain: *grain,
+                grain: assembly.grains[id],
                 displacement: equilibrium.state.displacements[body],
                 load: load_and_reaction(equilibrium, body),
                 contacts: contacts[id],
@@ -304,7 +313,7 @@ impl<'a> Results<'a> {
                 state: self.grain_state(equilibrium, id, contacts[id]),
             }
         };
-        assembly.grains.iter().map(row).collect()
+        range.map(GrainId::from_index).map(row).collect()
     }
 
     fn grain_state(
@@ -325,16 +334,17 @@ impl<'a> Results<'a> {
         }
     }
 
-    fn contact_rows(&self, equilibrium: &Equilibrium) -> Vec<ContactRow<'a>> {
-        let contacts = self.scene.assembly.contacts.iter();
-        let properties = &self.scene.properties;
-        let step = equilibrium.step;
-        contacts
-            .map(|(id, contact)| {
-                let state = &equilibrium.state.contacts[id];
-                ContactRow::new(step, id.index(), contact, state, properties)
-            })
-            .collect()
+    fn contact_rows(&self, range: Range<usize>, equilibrium: &Equilibrium) -> Vec<ContactRow<'a>> {
+        let scene = self.scene;
+        let row = |id: ContactId| {
+            let (contact, state) = (
+                &scene.assembly.contacts[id],
+                &equilibrium.state.contacts[id],
+            );
+            let step = equilibrium.step;
+            ContactRow::new(step, id.index(), contact, state, &scene.properties)
+        };
+        range.map(ContactId::from_index).map(row).collect()
     }
 
     fn side_rows(&self, equilibrium: &Equilibrium) -> Vec<SideRow> {

@@ -22,7 +22,8 @@ pub struct EnvelopePart {
 /// Exact for grains that do not overlap: their order changes only where the shadow of a grain begins or ends.
 /// In order along the side; stretches over which no grain is met do not appear. O(N log N).
 pub fn envelope(grains: &PerGrain<Grain>, side: &Side) -> Vec<EnvelopePart> {
-    let shadows = shadows(grains, side);
+    let mut shadows = shadows(grains, side);
+    drop_hidden(&mut shadows, side.length());
     let mut ends: Vec<(f64, bool, usize)> = Vec::with_capacity(2 * shadows.len());
     for (k, shadow) in shadows.iter().enumerate() {
         ends.push((shadow.from(), true, k));
@@ -45,6 +46,32 @@ pub fn envelope(grains: &PerGrain<Grain>, side: &Side) -> Vec<EnvelopePart> {
         }
     }
     parts
+}
+
+/// Drops shadows of grains that others hide wherever they reach: by cells of the side, whose whole width some grain
+/// shades.
+fn drop_hidden(shadows: &mut Vec<Shadow>, length: f64) {
+    let radii = shadows.iter().map(|shadow| shadow.radius).sum::<f64>();
+    let cells = (length * shadows.len() as f64 / radii).clamp(1.0, shadows.len().max(1) as f64);
+    let width = length / cells.floor();
+    let mut hidden_below = vec![f64::INFINITY; cells as usize];
+    let touched = |shadow: &Shadow| {
+        let cell = |at: f64| ((at / width).max(0.0) as usize).min(cells as usize - 1);
+        cell(shadow.from())..=cell(shadow.to())
+    };
+    for shadow in shadows.iter() {
+        for cell in touched(shadow) {
+            let (from, to) = (cell as f64 * width, (cell + 1) as f64 * width);
+            if shadow.from() <= from && to <= shadow.to() {
+                let deepest = shadow.depth(from).max(shadow.depth(to));
+                hidden_below[cell] = deepest.min(hidden_below[cell]);
+            }
+        }
+    }
+    shadows.retain(|shadow| {
+        let nearest = shadow.distance - shadow.radius;
+        touched(shadow).any(|cell| nearest <= hidden_below[cell])
+    });
 }
 
 fn add_part(

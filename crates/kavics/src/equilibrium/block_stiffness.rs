@@ -3,6 +3,8 @@
 //! A node is a body with a free freedom. Held freedoms, and bodies that are set aside, are unit rows.
 
 use super::Iteration;
+use rayon::prelude::*;
+
 use super::configuration::Configuration;
 use super::kinematics::{Block, FREEDOMS};
 use super::system::System;
@@ -31,7 +33,7 @@ impl NodeOrder {
             .map(BodyId::from_index)
             .collect();
         let height = ROW * system.assembly.mean_radius();
-        bodies.sort_by_cached_key(|&body| {
+        bodies.par_sort_by_cached_key(|&body| {
             let place = system.reference_point(body);
             // Whole numbers order as they are; x does once it is counted in small parts of a row.
             let row = (place.y / height).floor() as i64;

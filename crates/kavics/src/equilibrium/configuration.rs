@@ -1,9 +1,14 @@
 //! What is sought and how far the search has come: actions, configurations, failures.
 
+use rayon::prelude::*;
+
 use super::bond::Bond;
 use super::{Displacement, Freedom, Iterate, Load, SolveError, State};
 use crate::assembly::{Assembly, Partner};
 use crate::ids::{BodyId, ContactId, GrainId, PerBody, PerContact};
+
+/// Fewer bonds are not worth a task of their own.
+const LEAST_TASK: usize = 4096;
 
 /// What acts on the assembly.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +20,7 @@ pub struct Action {
 }
 
 /// Displacements and bonds, and how well they balance.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Configuration {
     /// Displacement of each body.
     pub displacements: PerBody<Displacement>,
@@ -23,12 +28,24 @@ pub struct Configuration {
     pub bonds: PerContact<Bond>,
 }
 
+impl Clone for Configuration {
+    /// Bonds are many bytes: all threads copy.
+    fn clone(&self) -> Self {
+        let bonds = self.bonds.values().par_iter().with_min_len(LEAST_TASK);
+        Self {
+            displacements: self.displacements.clone(),
+            bonds: bonds.copied().collect::<Vec<_>>().into(),
+        }
+    }
+}
+
 impl Configuration {
     /// As a result.
     pub fn state(&self) -> State {
+        let bonds = self.bonds.values().par_iter().with_min_len(LEAST_TASK);
         State {
             displacements: self.displacements.clone(),
-            contacts: self.bonds.map(Bond::state),
+            contacts: bonds.map(Bond::state).collect::<Vec<_>>().into(),
         }
     }
 }

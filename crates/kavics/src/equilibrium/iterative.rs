@@ -1,10 +1,13 @@
 //! Linear systems by iteration: when, with what matrix, how far, and what where it fails.
 
+use rayon::prelude::*;
+
 use super::block_stiffness::NodeOrder;
 use super::configuration::Configuration;
 use super::kinematics::FREEDOMS;
-use super::system::System;
+use super::system::{System, stiffness_of};
 use super::{Breakdown, Iteration, SolverChoice};
+use crate::ids::Id;
 use crate::solver::{BlockSystem, Iterated, IterativeSolver};
 
 /// From this many unknowns on, systems are solved by iteration unless the scene says otherwise.
@@ -13,8 +16,11 @@ const MANY: usize = 1_000_000;
 const SHARE: f64 = 0.1;
 /// Where the matrix depends on the state, a step need not be better than this.
 const STEP: f64 = 1e-4;
-/// An iteration that gains no more has served if it came so far.
+/// An iteration has served if it left no more than this share of the residual.
 const SERVED: f64 = 1e-3;
+
+/// Contacts that are hashed together.
+const CHUNK: usize = 4096;
 
 /// What is kept from one solve by iteration to the next.
 pub struct Iterating {
@@ -111,7 +117,8 @@ impl System<'_> {
         };
         match solution.end {
             Iterated::NegativeCurvature => return Err(Breakdown::NotPositive),
-            Iterated::Stagnated if solution.gain.is_nan() || solution.gain > SERVED => {
+            // Along a floppy mode the iteration may think that it converged.
+            _ if solution.gain.is_nan() || solution.gain > SERVED => {
                 return Err(Breakdown::Stagnated);
             }
             _ => {}
@@ -145,7 +152,7 @@ impl System<'_> {
     ) -> f64 {
         let bonds = configuration.bonds.values();
         let forces = bonds.iter().map(|b| b.force.normal.hypot(b.force.shear));
-        let force = forces.fold(self.largest_force, f64::max);
+        let force = forces.fold(0.0, f64::max);
         let loads = loads.iter().flatten().zip(units.iter().flatten());
         let load = loads.map(|(l, u)| (l * u).abs()).fold(0.0, f64::max);
         let last = SHARE * self.settings.tolerance * force.max(load);
@@ -162,17 +169,31 @@ impl System<'_> {
 
     /// A number that changes when the matrix does.
     fn fingerprint(&self, configuration: &Configuration, iteration: Iteration) -> u64 {
-        let mut fingerprint = Fingerprint::default();
-        for (frame, bond) in self.frames.iter().zip(configuration.bonds.values()) {
-            if bond.is_active() && !self.set_aside[frame.first.0 as usize] {
-                for value in self.stiffness_of(bond, iteration).as_flattened() {
-                    fingerprint.add(value.to_bits());
+        let (properties, set_aside) = (self.properties, &self.set_aside);
+        let frames = self.frames.par_chunks(CHUNK);
+        let chunks = frames.zip(configuration.bonds.values().par_chunks(CHUNK));
+        let parts: Vec<u64> = chunks
+            .map(|(frames, bonds)| {
+                let mut part = Fingerprint::default();
+                for (frame, bond) in frames.iter().zip(bonds) {
+                    if bond.is_active() && !set_aside[frame.first.index()] {
+                        let stiffness = stiffness_of(bond, properties, iteration);
+                        let words = stiffness.as_flattened().iter();
+                        for value in words {
+                            part.add(value.to_bits());
+                        }
+                    } else {
+                        part.add(1);
+                    }
                 }
-            } else {
-                fingerprint.add(1);
-            }
+                part.0
+            })
+            .collect();
+        let mut whole = Fingerprint::default();
+        for part in parts {
+            whole.add(part);
         }
-        fingerprint.0
+        whole.0
     }
 }
 

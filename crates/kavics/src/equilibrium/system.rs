@@ -1,5 +1,7 @@
 //! The assembly as a system of equations: unknowns, pieces, forces and what they leave unbalanced.
 
+use rayon::prelude::*;
+
 use super::bond::Bond;
 use super::configuration::Configuration;
 use super::iterative::Iterating;
@@ -11,6 +13,9 @@ use crate::contact_law::{ContactForce, Law, Matrix, Property};
 use crate::geometry::Pieces;
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
 use crate::solver::{GeneralSolver, Inertia, SymmetricSolver};
+
+/// Fewer contacts are not worth a task of their own.
+const LEAST_TASK: usize = 4096;
 
 /// The assembly as a system of equations, with all that is kept from one equilibrium to the next.
 pub struct System<'a> {
@@ -73,7 +78,8 @@ impl<'a> System<'a> {
         let frames: Vec<_> = assembly
             .contacts
             .values()
-            .iter()
+            .par_iter()
+            .with_min_len(LEAST_TASK)
             .map(|c| ContactFrame::new(assembly, c))
             .collect();
         let mut free = vec![[true; ALL_FREEDOMS.len()]; assembly.body_count()];
@@ -188,11 +194,12 @@ impl<'a> System<'a> {
             displacements,
             bonds,
         } = configuration;
-        for (frame, bond) in self.frames.iter().zip(bonds.values_mut()) {
-            bond.displacement = frame
-                .relative_displacement(displacements[frame.first], displacements[frame.second]);
-            bond.force = bond.respond(bond.displacement, self.properties).force;
-        }
+        let (u, properties) = (&*displacements, self.properties);
+        let contacts = self.frames.par_iter().zip(bonds.values_mut());
+        contacts.with_min_len(LEAST_TASK).for_each(|(frame, bond)| {
+            bond.displacement = frame.relative_displacement(u[frame.first], u[frame.second]);
+            bond.force = bond.respond(bond.displacement, properties).force;
+        });
     }
 
     /// What the loads and the contact forces leave unbalanced.
@@ -262,11 +269,7 @@ impl<'a> System<'a> {
     }
 
     pub(super) fn stiffness_of(&self, bond: &Bond, iteration: Iteration) -> Matrix {
-        let response = bond.respond(bond.displacement, self.properties);
-        match iteration {
-            Iteration::Secant => response.secant,
-            Iteration::Tangent => response.tangent,
-        }
+        stiffness_of(bond, self.properties, iteration)
     }
 
     /// Whether a contact opens, closes, sticks and slides.
@@ -281,5 +284,18 @@ impl<'a> System<'a> {
             .values()
             .iter()
             .any(|bond| self.has_phases(bond))
+    }
+}
+
+/// The secant or the tangent of a contact.
+pub(super) fn stiffness_of(
+    bond: &Bond,
+    properties: &PerProperty<Property>,
+    iteration: Iteration,
+) -> Matrix {
+    let response = bond.respond(bond.displacement, properties);
+    match iteration {
+        Iteration::Secant => response.secant,
+        Iteration::Tangent => response.tangent,
     }
 }

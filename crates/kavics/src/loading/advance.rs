@@ -1,5 +1,7 @@
 //! From one equilibrium to the next along the load path, bonds breaking on the way.
 
+use rayon::prelude::*;
+
 use super::ledger::{self, Forces};
 use super::work::{self, Account, Stretch, Vanishing};
 use super::{Breakage, Program};
@@ -483,12 +485,10 @@ pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result
 /// The undeformed assembly.
 pub fn undeformed(system: &mut System<'_>, program: &Program) -> Point {
     let assembly = system.assembly;
-    let bonds = assembly
-        .contacts
-        .values()
-        .iter()
-        .map(|c| Bond::new(c, system.properties, assembly.thickness))
-        .collect();
+    let (properties, thickness) = (system.properties, assembly.thickness);
+    let contacts = assembly.contacts.values().par_iter().with_min_len(4096);
+    let bonds = contacts.map(|contact| Bond::new(contact, properties, thickness));
+    let bonds = bonds.collect::<Vec<_>>().into();
     let bodies = assembly.body_count();
     let configuration = Configuration {
         displacements: PerBody::filled(Displacement::default(), bodies),

@@ -228,7 +228,7 @@ pub struct EquilibriumFile {
     pub tie_tolerance: Option<Number>,
     /// Bound on the error of work and energies in a load step, relative to its work; 1e-6 when absent.
     pub work_tolerance: Option<Number>,
-    /// "auto" (when absent) or "direct".
+    /// "auto" (when absent), "direct" or "iterative".
     pub solver: Option<Placed<String>>,
     /// "load" (when absent), "displacement", "dissipation" or "auto".
     pub control: Option<Placed<String>>,

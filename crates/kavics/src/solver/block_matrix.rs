@@ -67,20 +67,22 @@ impl<T: Real, const B: usize> BlockMatrix<T, B> {
         }
         let mut next = row_start.clone();
         let mut column = vec![0; self.column.len()];
-        let mut block = vec![[[T::default(); B]; B]; self.block.len()];
+        let mut source = vec![0; self.column.len()];
         for row in 0..self.rows() {
-            let (columns, blocks) = self.row(row);
-            for (&other, entry) in columns.iter().zip(blocks) {
-                let place = &mut next[other as usize];
+            for entry in self.row_start[row]..self.row_start[row + 1] {
+                let place = &mut next[self.column[entry as usize] as usize];
                 column[*place as usize] = row as u32;
-                block[*place as usize] = transposed(entry);
+                source[*place as usize] = entry;
                 *place += 1;
             }
         }
+        let entries = source.par_iter();
         Self {
             row_start,
             column,
-            block,
+            block: entries
+                .map(|&entry| transposed(&self.block[entry as usize]))
+                .collect(),
         }
     }
 }
@@ -137,23 +139,42 @@ impl<const B: usize> BlockMatrix<f64, B> {
                 },
             )
             .collect();
-        let entries = chunks.iter().map(|chunk| chunk.column.len()).sum();
-        let mut matrix = Self {
-            row_start: Vec::with_capacity(rows + 1),
-            column: Vec::with_capacity(entries),
-            block: Vec::with_capacity(entries),
-        };
-        matrix.row_start.push(0);
-        for chunk in chunks {
-            let before = matrix.column.len() as u32;
-            matrix
-                .row_start
-                .extend(chunk.row_end.iter().map(|end| before + end));
-            matrix.column.extend_from_slice(&chunk.column);
-            matrix.block.extend_from_slice(&chunk.block);
-        }
-        matrix
+        Self::joined(&chunks)
     }
+
+    fn joined(chunks: &[RowSum<B>]) -> Self {
+        let mut row_start = vec![0];
+        for chunk in chunks {
+            let before = row_start[row_start.len() - 1];
+            row_start.extend(chunk.row_end.iter().map(|end| before + end));
+        }
+        let columns = chunks.iter().map(|chunk| &chunk.column[..]);
+        let blocks = chunks.iter().map(|chunk| &chunk.block[..]);
+        Self {
+            row_start,
+            column: joined(0, columns),
+            block: joined([[0.0; B]; B], blocks),
+        }
+    }
+}
+
+/// Parts one after the other, copied by all threads.
+fn joined<'a, T: Copy + Send + Sync + 'a>(
+    zero: T,
+    parts: impl Iterator<Item = &'a [T]> + Clone,
+) -> Vec<T> {
+    let mut whole = vec![zero; parts.clone().map(<[T]>::len).sum()];
+    let mut rest = &mut whole[..];
+    let mut tasks = Vec::new();
+    for part in parts {
+        let (here, after) = rest.split_at_mut(part.len());
+        tasks.push((here, part));
+        rest = after;
+    }
+    tasks
+        .into_par_iter()
+        .for_each(|(here, part)| here.copy_from_slice(part));
+    whole
 }
 
 /// The entries of some rows as they are summed up.

@@ -13,6 +13,9 @@ mod dense;
 mod level;
 
 pub use self::coarsening::Modes;
+#[cfg(test)]
+mod tests;
+
 use self::coarsening::largest_eigenvalue;
 use self::dense::Dense;
 use self::level::{Coarse, Level, Work};
