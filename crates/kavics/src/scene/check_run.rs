@@ -138,6 +138,10 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
     ];
     let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
+    if let (Some(Breakage::EventDriven), Some(SolverChoice::Iterative)) = (breakage, solver) {
+        events_need_a_factor(file.solver.as_ref()?, checker);
+        return None;
+    }
     control?;
     let settings = Settings {
         tolerance: tolerance?,
@@ -148,6 +152,14 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         ..default
     };
     Some((settings, breakage?))
+}
+
+fn events_need_a_factor(solver: &Placed<String>, checker: &mut Checker) {
+    checker.push(Problem::at(
+        &solver.span,
+        "`solver = \"iterative\"` with `breakage = \"event-driven\"`",
+        "expected \"auto\" or \"direct\": events change the factor of the direct solver",
+    ));
 }
 
 /// Least bound on the residual: a few roundings of double precision.
