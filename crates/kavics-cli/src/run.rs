@@ -5,7 +5,7 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
-use kavics::measure::{Snapshot, Window, grain_stress, measures};
+use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
 use kavics_results::{Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room};
 
@@ -89,7 +89,11 @@ fn push(
         results.push_iterate(equilibrium, iterate, &measures);
     }
     let snapshot = snapshot(scene, equilibrium, &equilibrium.state);
-    let measures = measures(&snapshot, window);
+    let tangents = equilibrium.tangents.as_ref();
+    let measures = Measures {
+        moduli: tangents.and_then(|tangents| moduli(&scene.assembly, tangents, window)),
+        ..measures(&snapshot, window)
+    };
     results.push(equilibrium, &measures, &grain_stress(&snapshot))?;
     Ok(())
 }

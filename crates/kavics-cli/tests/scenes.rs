@@ -319,6 +319,32 @@ fn a_listed_layer_is_found_again_in_the_results() {
     );
 }
 
+/// Every bond that breaks takes three force components and stiffness; in the end a part of the pack hangs by a few bonds.
+#[test]
+fn stability_and_moduli_fall_with_the_bonds_that_break() {
+    let run = done("stability.toml");
+    let (broken, bulk) = (run.steps("broken"), run.steps("bulk_modulus"));
+    let indeterminacy = run.steps("static_indeterminacy");
+    let (eigenvalue, voigt) = (
+        run.steps("lowest_eigenvalue"),
+        run.steps("voigt_modulus_xxxx"),
+    );
+    let modulus = run.steps("modulus_xxxx");
+    let last = broken.len() - 1;
+    assert!(broken[last] > 20.0 && run.steps("zero_eigenvalues")[last] == 0.0);
+    for step in 1..=last {
+        let fewer = 3.0 * (broken[step] - broken[step - 1]);
+        assert_eq!(indeterminacy[step - 1] - indeterminacy[step], fewer);
+        // Rounding moves the moduli where nothing breaks.
+        assert!(bulk[step] < bulk[step - 1] * (1.0 + 1e-12));
+        assert!(modulus[step] < voigt[step]);
+        assert!(eigenvalue[step] < eigenvalue[step - 1] * (1.0 + 1e-9));
+    }
+    assert!(eigenvalue[last] < 0.05 * eigenvalue[0]);
+    let second_order = run.steps("second_order_work");
+    assert!(second_order[0] > 0.0 && second_order.iter().any(|work| *work < 0.0));
+}
+
 /// Timed by hand; here with few grains, where their number can be set.
 #[test]
 fn the_benchmarks_are_right_scenes() {

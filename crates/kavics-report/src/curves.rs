@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::plot::{Plot, Series, draw};
 use crate::tensor::{Principal, near};
-use crate::{ReportError, energy, packing};
+use crate::{ReportError, energy, moduli, packing};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
@@ -61,7 +61,7 @@ impl Abscissa {
         })
     }
 
-    fn with(&self, values: &[f64]) -> Vec<(f64, f64)> {
+    pub(crate) fn with(&self, values: &[f64]) -> Vec<(f64, f64)> {
         let pairs = self.values.iter().zip(values);
         pairs.map(|(&x, &y)| (x, y)).collect()
     }
@@ -113,12 +113,20 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
             pairs: true,
             figures: energy::figures(steps, &over)?,
         },
+        Group {
+            heading: "Stability and moduli over the run",
+            note: "Lowest eigenvalue of the tangent, rotations counted by what they move at the rim; work of the \
+                   change of the loads in each load step; force components beyond those that equilibrium determines; \
+                   moduli of the nearest isotropic tensor, and Voigt's bound on them.",
+            pairs: false,
+            figures: moduli::figures(steps, &over)?,
+        },
     ];
     let with_figures = groups.into_iter().filter(|group| !group.figures.is_empty());
     Ok(with_figures.collect())
 }
 
-fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figure {
+pub(crate) fn figure(title: &str, x_label: &str, y_label: &str, series: &[Series]) -> Figure {
     let plot = Plot {
         x_label,
         y_label,
@@ -174,7 +182,7 @@ fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
         .collect())
 }
 
-fn column(
+pub(crate) fn column(
     steps: &Columns,
     over: &Abscissa,
     column: &str,

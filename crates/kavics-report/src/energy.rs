@@ -9,7 +9,7 @@ use crate::axis::Axis;
 use crate::curves::{Abscissa, Figure, LegendEntry};
 use crate::number::brief;
 use crate::plot::{
-    HEIGHT, LEFT, RIGHT, WIDTH, draw_abscissa, draw_heights, draw_labels, escape, height, start,
+    LEFT, RIGHT, WIDTH, draw_abscissa, draw_heights, draw_labels, escape, height, start,
 };
 
 /// What stands above the figures.
@@ -24,6 +24,8 @@ const PARTS: [(&str, &str, usize); 5] = [
     ("release_energy", "release", 5),
     ("fracture_energy", "fracture", 1),
 ];
+/// Less than this share of the largest is hardly seen.
+const SLIGHT: f64 = 0.02;
 /// Colour of the external work.
 const WORK: usize = 4;
 
@@ -130,58 +132,79 @@ fn edges(parts: &[Part], count: usize) -> Vec<[Vec<f64>; 2]> {
     all
 }
 
-fn draw(x_label: &str, places: &[f64], parts: &[Part], work: Option<&[f64]>) -> String {
-    let edges = edges(parts, places.len());
-    let x = Axis::over(places.iter().copied(), 5.0);
-    let heights = edges.iter().flatten().flatten();
-    let y = Axis::over(heights.chain(work.into_iter().flatten()).copied(), 5.0);
-    let points = |values: &[f64]| -> Vec<String> {
-        let pairs = places.iter().zip(values);
+/// The axes, and the load path along the horizontal one.
+struct Frame<'a> {
+    x: Axis,
+    y: Axis,
+    places: &'a [f64],
+}
+
+impl Frame<'_> {
+    fn left(&self, place: f64) -> f64 {
+        LEFT + self.x.share(place) * (WIDTH - LEFT - RIGHT)
+    }
+
+    fn points(&self, values: &[f64]) -> Vec<String> {
+        let pairs = self.places.iter().zip(values);
         pairs
             .map(|(&place, &value)| {
-                let left = LEFT + x.share(place) * (WIDTH - LEFT - RIGHT);
-                format!("{left:.1} {:.1}", height(&y, value))
+                format!("{:.1} {:.1}", self.left(place), height(&self.y, value))
             })
             .collect()
+    }
+}
+
+fn draw(x_label: &str, places: &[f64], parts: &[Part], work: Option<&[f64]>) -> String {
+    let edges = edges(parts, places.len());
+    let heights = edges.iter().flatten().flatten();
+    let heights = heights.chain(work.into_iter().flatten()).copied();
+    let most = heights.clone().map(f64::abs).fold(0.0, f64::max);
+    // What would hardly be seen below zero makes no room there.
+    let seen = heights.filter(|height| height.abs() >= SLIGHT * most);
+    let frame = Frame {
+        x: Axis::over(places.iter().copied(), 5.0),
+        y: Axis::over(seen.chain([0.0]), 5.0),
+        places,
     };
     let mut svg = start(x_label, "force × length");
-    draw_heights(&mut svg, &y);
+    draw_heights(&mut svg, &frame.y);
     for (pair, part) in edges.chunks(2).zip(parts) {
-        for [from, to] in pair.iter().filter(|[from, to]| from != to) {
-            let mut outline = points(to);
-            outline.extend(points(from).into_iter().rev());
-            let _ = write!(
-                svg,
-                "<path class=\"area f{}\" d=\"M{}Z\"><title>{}</title></path>",
-                part.colour,
-                outline.join("L"),
-                escape(part.name)
-            );
+        for edges in pair.iter().filter(|[from, to]| from != to) {
+            draw_area(&mut svg, &frame, edges, part);
         }
     }
     if let Some(work) = work {
-        let line = points(work).join("L");
+        let line = frame.points(work).join("L");
         let _ = write!(
             svg,
             "<path class=\"line c{WORK}\" stroke-width=\"1.8\" d=\"M{line}\"/>"
         );
     }
-    for tick in x.ticks() {
-        let left = LEFT + x.share(tick.value) * (WIDTH - LEFT - RIGHT);
-        draw_abscissa(&mut svg, left, &tick.label, "v5");
+    for tick in frame.x.ticks() {
+        draw_abscissa(&mut svg, frame.left(tick.value), &tick.label, "v5");
     }
     // The line of zero stands before what is given back.
-    let zero = height(&y, 0.0);
-    if zero < HEIGHT {
-        let _ = write!(
-            svg,
-            "<path class=\"zero\" d=\"M{LEFT} {zero:.1}H{}\"/>",
-            WIDTH - RIGHT
-        );
-    }
+    let _ = write!(
+        svg,
+        "<path class=\"zero\" d=\"M{LEFT} {:.1}H{}\"/>",
+        height(&frame.y, 0.0),
+        WIDTH - RIGHT
+    );
     draw_labels(&mut svg, x_label, "force × length");
     svg.push_str("</svg>");
     svg
+}
+
+fn draw_area(svg: &mut String, frame: &Frame<'_>, [from, to]: &[Vec<f64>; 2], part: &Part) {
+    let mut outline = frame.points(to);
+    outline.extend(frame.points(from).into_iter().rev());
+    let _ = write!(
+        svg,
+        "<path class=\"area f{}\" d=\"M{}Z\"><title>{}</title></path>",
+        part.colour,
+        outline.join("L"),
+        escape(part.name)
+    );
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::axis::round_step;
 use crate::number::show;
 
 /// Length of the picture's longer side, in its own units.
-const EXTENT: f64 = 10_000.0;
+pub(crate) const EXTENT: f64 = 10_000.0;
 
 /// Widths of lines.
 const WIDTHS: usize = 12;
@@ -28,17 +28,17 @@ const NO_FORCE: f64 = 1e-6;
 const SMALLEST_MARK: i32 = 45;
 
 /// A point of the picture, downwards, whole units.
-type Point = [i32; 2];
+pub(crate) type Point = [i32; 2];
 
 /// Lines gathered into one path.
 #[derive(Debug, Default)]
-struct Path {
+pub(crate) struct Path {
     text: String,
     pen: Point,
 }
 
 impl Path {
-    fn line(&mut self, from: Point, to: Point) {
+    pub(crate) fn line(&mut self, from: Point, to: Point) {
         let command = if self.text.is_empty() { 'M' } else { 'm' };
         let start = [from[0] - self.pen[0], from[1] - self.pen[1]];
         let step = [to[0] - from[0], to[1] - from[1]];
@@ -53,7 +53,7 @@ impl Path {
         let _ = write!(self.text, "{command}{x}{gap}{y}");
     }
 
-    fn circle(&mut self, [x, y]: Point, radius: i32) {
+    pub(crate) fn circle(&mut self, [x, y]: Point, radius: i32) {
         let command = if self.text.is_empty() { 'M' } else { 'm' };
         self.command(command, [x - radius - self.pen[0], y - self.pen[1]]);
         let (r, d) = (radius, 2 * radius);
@@ -61,7 +61,7 @@ impl Path {
         self.pen = [x - radius, y];
     }
 
-    fn write(&self, svg: &mut String, class: &str, attributes: &str) {
+    pub(crate) fn write(&self, svg: &mut String, class: &str, attributes: &str) {
         if !self.text.is_empty() {
             let _ = write!(
                 svg,
@@ -74,17 +74,17 @@ impl Path {
 
 /// From the scene's lengths to the picture.
 #[derive(Clone, Copy, Debug)]
-struct Map {
+pub(crate) struct Map {
     left: f64,
     top: f64,
     scale: f64,
-    width: f64,
-    height: f64,
-    margin: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    pub(crate) margin: f64,
 }
 
 impl Map {
-    fn around(grains: &Discs) -> Self {
+    pub(crate) fn around(grains: &Discs) -> Self {
         let bound = |at: &[f64], sign: f64| {
             let edges = at.iter().zip(&grains.radius).map(|(x, r)| x + sign * r);
             edges.fold(f64::NEG_INFINITY * sign, |a, b| {
@@ -105,27 +105,27 @@ impl Map {
         }
     }
 
-    fn point(self, x: f64, y: f64) -> Point {
+    pub(crate) fn point(self, x: f64, y: f64) -> Point {
         let across = self.margin + (x - self.left) * self.scale;
         let down = self.margin + (self.top - y) * self.scale;
         [across.round() as i32, down.round() as i32]
     }
 
-    fn length(self, length: f64) -> i32 {
+    pub(crate) fn length(self, length: f64) -> i32 {
         (length * self.scale).round() as i32
     }
 }
 
 /// Centres and radii of the grains, before loading.
 #[derive(Debug)]
-struct Discs {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    radius: Vec<f64>,
+pub(crate) struct Discs {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) radius: Vec<f64>,
 }
 
 impl Discs {
-    fn read(table: &Columns) -> Result<Self, ReportError> {
+    pub(crate) fn read(table: &Columns) -> Result<Self, ReportError> {
         Ok(Self {
             x: table.numbers("x")?,
             y: table.numbers("y")?,
@@ -328,7 +328,7 @@ fn draw_contacts(svg: &mut String, grains: &Discs, lines: &Lines, marked: &Marke
     crosses.write(svg, "gone", &stroke(1.5 * thin));
 }
 
-fn stroke(width: f64) -> String {
+pub(crate) fn stroke(width: f64) -> String {
     format!(" stroke-width=\"{width:.1}\"")
 }
 

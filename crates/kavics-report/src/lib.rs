@@ -10,6 +10,8 @@ mod curves;
 mod energy;
 mod error;
 mod graph;
+mod modes;
+mod moduli;
 mod number;
 mod packing;
 mod page;

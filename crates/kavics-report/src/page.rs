@@ -9,6 +9,8 @@ use serde::Serialize;
 
 use crate::curves::{Group, groups};
 use crate::graph;
+use crate::modes::{Modes, modes};
+use crate::moduli;
 use crate::number::{brief, fixed, show};
 use crate::{Comparison, ReportError};
 
@@ -35,6 +37,8 @@ struct Page {
     large: bool,
     largest: String,
     groups: Vec<Group>,
+    moduli: Table,
+    modes: Modes,
     parts: Vec<PartsRow>,
     steps: Table,
     sides: Table,
@@ -64,10 +68,10 @@ struct PartsRow {
 
 /// A table with named columns.
 #[derive(Debug, Default, Serialize)]
-struct Table {
-    names: Vec<&'static str>,
-    rows: Vec<Vec<String>>,
-    left_out: usize,
+pub(crate) struct Table {
+    pub(crate) names: Vec<&'static str>,
+    pub(crate) rows: Vec<Vec<String>>,
+    pub(crate) left_out: usize,
 }
 
 /// A number that sums up the run.
@@ -103,6 +107,8 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         large: record.grains > LARGE,
         largest: show(largest),
         groups: groups(folder, &steps)?,
+        moduli: moduli::table(&steps)?,
+        modes: modes(folder)?,
         parts: parts(&steps)?,
         steps: steps_table(&steps)?,
         sides: sides_table(folder)?,

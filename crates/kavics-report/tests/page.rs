@@ -120,6 +120,33 @@ fn results_that_do_not_know_their_container_have_no_packing_fraction() {
 }
 
 #[test]
+fn modes_are_drawn_and_moduli_stand_beside_their_bound() {
+    let place = place();
+    let mut scene = block::scene(7, 5);
+    let page = page_of(place.path(), &scene);
+    assert!(!page.contains("<h2>Lowest modes</h2>"));
+    scene.settings.modes = 1;
+    let other = place.path().join("other");
+    fs::create_dir(&other).expect("room on the disk");
+    let page = page_of(&other, &scene);
+    for part in [
+        "Mode 1<small>eigenvalue 0.125 · participation 20",
+        "class=\"moved\"",
+        "<figcaption>Lowest eigenvalue",
+        "<figcaption>Static indeterminacy",
+        "<figcaption>Bulk and shear modulus",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // The grains of the uppermost row move most.
+    assert!(page.contains("Most of all move the grains 27, 28, 29, 30, 31."));
+    // K = 40 of 50, G = 20 of 40, ν = (K − G)/(K + G).
+    assert!(page.contains(
+        "<td>40</td><td>0.800</td><td>20</td><td>0.500</td><td>0.333</td><td>0.000</td>"
+    ));
+}
+
+#[test]
 fn a_title_is_text_and_no_markup() {
     let place = place();
     let mut scene = block::scene(7, 5);

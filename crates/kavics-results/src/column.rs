@@ -15,6 +15,10 @@ pub enum Unit {
     Area,
     /// Force.
     Force,
+    /// Stiffness.
+    Stiffness,
+    /// A rotation per displacement.
+    PerLength,
     /// Moment, work or energy.
     ForceLength,
     /// Stress.
@@ -30,6 +34,8 @@ impl Unit {
             Self::Length => "length",
             Self::Area => "length^2",
             Self::Force => "force",
+            Self::Stiffness => "force/length",
+            Self::PerLength => "1/length",
             Self::ForceLength => "force*length",
             Self::Stress => "force/length^2",
         }

@@ -11,7 +11,7 @@ use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
 use crate::ResultsError;
 use crate::record::{RunRecord, RunState};
-use crate::room::{CRACKS, RECORDED, VOIDS};
+use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -258,6 +258,18 @@ impl ResultsFolder {
     /// A table that cannot be read.
     pub fn voids(&self, step: usize) -> Result<Columns, ResultsError> {
         self.recorded(VOIDS, step)
+    }
+
+    /// The table `modes` at a recorded load step, of a scene that asks for them; none where there is no such table.
+    ///
+    /// # Errors
+    /// A table that is there and cannot be read.
+    pub fn modes(&self, step: usize) -> Result<Option<Columns>, ResultsError> {
+        if recorded_path(&self.path, MODES, step).is_file() {
+            self.recorded(MODES, step).map(Some)
+        } else {
+            Ok(None)
+        }
     }
 
     /// The recorded load steps in order, 0 first.

@@ -19,9 +19,10 @@ use crate::events::{EventRow, event_columns};
 use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
 use crate::log::Log;
+use crate::modes::{mode_columns, mode_rows};
 use crate::packing_record::PackingRecord;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
-use crate::room::{CRACKS, RECORDED, VOIDS, make_room};
+use crate::room::{CRACKS, MODES, RECORDED, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
@@ -69,9 +70,12 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
-        let voids = scene.record_voids.then_some(VOIDS);
-        let cracks = scene.record_cracks.then_some(CRACKS);
-        for name in RECORDED.into_iter().chain(voids).chain(cracks) {
+        let asked_for = [
+            scene.record_voids.then_some(VOIDS),
+            scene.record_cracks.then_some(CRACKS),
+            (scene.settings.modes > 0).then_some(MODES),
+        ];
+        for name in RECORDED.into_iter().chain(asked_for.into_iter().flatten()) {
             let path = folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -206,6 +210,7 @@ impl<'a> Results<'a> {
             iterations: equilibrium.iterations,
             residual: equilibrium.residual,
             energy: Some(equilibrium.energy),
+            stability: equilibrium.stability.as_ref().map(|s| s.summary),
             ..self.row_of_state(equilibrium, &equilibrium.state, measures)
         }
     }
@@ -270,6 +275,10 @@ impl<'a> Results<'a> {
         if self.scene.record_voids {
             let rows = void_rows(equilibrium.step, &void_cells(&snapshot));
             publish_table(&path(VOIDS), &void_columns(), &rows)?;
+        }
+        if let Some(stability) = &equilibrium.stability {
+            let rows = mode_rows(equilibrium.step, &self.scene.assembly, stability);
+            publish_table(&path(MODES), &mode_columns(), &rows)?;
         }
         Ok(())
     }

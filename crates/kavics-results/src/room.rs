@@ -9,11 +9,13 @@ use crate::ResultsError;
 pub(crate) const RECORDED: [&str; 3] = ["grains", "contacts", "sides"];
 
 /// Folders of tables that are written when asked for.
-pub(crate) const ASKED_FOR: [&str; 2] = [VOIDS, CRACKS];
+pub(crate) const ASKED_FOR: [&str; 3] = [VOIDS, CRACKS, MODES];
 /// Void cells.
 pub(crate) const VOIDS: &str = "voids";
 /// Cracks.
 pub(crate) const CRACKS: &str = "cracks";
+/// Lowest modes of the tangent.
+pub(crate) const MODES: &str = "modes";
 
 /// The other files of a run.
 const FILES: [&str; 9] = [

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use kavics::equilibrium::Energy;
+use kavics::equilibrium::{Energy, StabilitySummary};
 use kavics::measure::{Measures, StressPartition, SymmetricTensor, Tensor};
 
 use crate::column::{AsObject, Column, Unit};
 use crate::encode::{Format, publish, publish_table};
+use crate::stability::{moduli_columns, stability_columns};
 use crate::{Columns, ResultsError, ResultsFolder};
 
 /// A row of `steps`.
@@ -36,6 +37,8 @@ pub struct StepRow {
     pub measures: Measures,
     /// Work and energy; none on the way to an equilibrium.
     pub energy: Option<Energy>,
+    /// Stability; none where it was not sought.
+    pub stability: Option<StabilitySummary>,
     /// Iteration, where the row is an iterate.
     pub iteration: Option<usize>,
 }
@@ -122,6 +125,8 @@ pub fn step_columns() -> Vec<Column<StepRow>> {
     columns.extend(scalars());
     columns.extend(tensors());
     columns.extend(works());
+    columns.extend(stability_columns());
+    columns.extend(moduli_columns());
     columns
 }
 
@@ -151,7 +156,11 @@ fn progress() -> Vec<Column<StepRow>> {
     ]
 }
 
-fn measure(name: &str, unit: Unit, read: fn(&Measures) -> Option<f64>) -> Column<StepRow> {
+pub(crate) fn measure(
+    name: &str,
+    unit: Unit,
+    read: fn(&Measures) -> Option<f64>,
+) -> Column<StepRow> {
     Column::maybe_number(name, unit, move |row: &StepRow| read(&row.measures))
 }
 

@@ -56,7 +56,10 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
             format!("second-order work negative in {}", count("contact"))
         }
         Warning::WorkError { relative } => {
-            format!("work and energies known to {up_to}{relative:.0e} of the work only")
+            format!("work and energies known to within {relative:.0e} of the work")
+        }
+        Warning::Separated => {
+            "separated: the loads fell to zero; what would follow is left out".to_owned()
         }
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
@@ -68,6 +71,7 @@ fn count(warning: &Warning) -> usize {
         Warning::RegularisedPivots { count } => *count,
         Warning::SolvedDirectly { .. } => 1,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
+        Warning::Separated => 1,
         Warning::WorkError { .. } => 0,
     }
 }
@@ -108,12 +112,16 @@ mod tests {
             warnings.add(step, &Warning::ShearFloor { contacts });
         }
         warnings.add(4, &Warning::RegularisedPivots { count: 1 });
+        for relative in [1e-5, 3e-4, 2e-6] {
+            warnings.add(7, &Warning::WorkError { relative });
+        }
         let texts: Vec<String> = warnings.texts().collect();
         assert_eq!(
             texts,
             [
                 "load steps 1, 3 to 4: shear modulus at its floor in up to 5 contacts",
-                "load step 4: 1 floppy mode that no load moves held in place"
+                "load step 4: 1 floppy mode that no load moves held in place",
+                "load step 7: work and energies known to within 3e-4 of the work"
             ]
         );
     }

@@ -28,7 +28,12 @@ fn steps_has_the_columns_of_the_contract_in_their_order() {
         variation_stress_xx variation_stress_xy variation_stress_yx variation_stress_yy \
         fabric_stress_xx fabric_stress_xy fabric_stress_yx fabric_stress_yy isotropic_stress \
         strain_xx strain_xy strain_yx strain_yy contact_work macroscopic_work boundary_work \
-        external_work elastic_energy fracture_energy friction_work nonpotential_work release_energy ledger_error";
+        external_work elastic_energy fracture_energy friction_work nonpotential_work release_energy ledger_error \
+        lowest_eigenvalue negative_eigenvalues zero_eigenvalues static_indeterminacy second_order_work \
+        modulus_xxxx modulus_xxyy modulus_xxxy modulus_yyxx modulus_yyyy modulus_yyxy modulus_xyxx modulus_xyyy \
+        modulus_xyxy voigt_modulus_xxxx voigt_modulus_xxyy voigt_modulus_xxxy voigt_modulus_yyxx voigt_modulus_yyyy \
+        voigt_modulus_yyxy voigt_modulus_xyxx voigt_modulus_xyyy voigt_modulus_xyxy \
+        bulk_modulus shear_modulus modulus_anisotropy modulus_asymmetry";
     let names: Vec<String> = kavics_results::step_columns()
         .into_iter()
         .map(|column| column.name)
@@ -84,6 +89,45 @@ fn tables_of_a_recorded_step_have_the_columns_of_the_contract() {
         names(results.events().unwrap()),
         "event step iteration load_factor contact grain kind mode fracture_energy release_energy avalanche"
     );
+}
+
+#[test]
+fn modes_are_written_where_they_are_sought() {
+    let place = place();
+    let (without, with) = (place.path().join("without"), place.path().join("with"));
+    let mut scene = block::scene(7, 5);
+    block::write(&without, &scene);
+    assert!(!without.join("modes").exists());
+    scene.settings.modes = 1;
+    block::write(&with, &scene);
+    let results = ResultsFolder::open(&with).unwrap();
+    assert!(results.modes(0).unwrap().is_none(), "before loading");
+    let modes = results.modes(5).unwrap().expect("a table");
+    assert_eq!(
+        modes.names().join(" "),
+        "step mode eigenvalue participation grain ux uy rotation"
+    );
+    assert_eq!(modes.len(), scene.assembly.grains.len());
+    assert_eq!(modes.numbers("eigenvalue").unwrap()[0], 0.125);
+    let steps = results.steps().unwrap();
+    assert_eq!(steps.numbers("lowest_eigenvalue").unwrap(), [0.125; 5]);
+    assert_eq!(
+        steps.integers("static_indeterminacy").unwrap(),
+        [Some(90); 5]
+    );
+    // K = 40, G = 20: C_xxxx = K + G, C_xxyy = K − G, C_xyxy = G.
+    let row = |name: &str| steps.numbers(name).unwrap()[0];
+    assert_eq!(
+        [
+            row("modulus_xxxx"),
+            row("modulus_yyxx"),
+            row("modulus_xyxy")
+        ],
+        [60.0, 20.0, 20.0]
+    );
+    assert_eq!([row("bulk_modulus"), row("shear_modulus")], [40.0, 20.0]);
+    // A later run takes the room of the modes, too.
+    assert!(check_room(&with, true).is_ok());
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! What holds at every equilibrium, whatever the pack and the load.
 
-use kavics::assembly::{Assembly, Between, ContactGraph, Shaping, box_sides, contact_graph};
+use kavics::assembly::{
+    Assembly, Between, Bodies, ContactGraph, Shaping, box_sides, contact_graph,
+};
 use kavics::contact_law::{Cemented, Law, Property, Reading, StiffnessRule, Strength};
 use kavics::equilibrium::{Displacement, Equilibrium, Freedom, Iteration, Load, Settings};
 use kavics::ids::{BodyId, GrainId, Id, PerProperty, PerSide, PropertyId};
@@ -35,9 +37,13 @@ fn pack(seed: u64) -> Assembly {
         &PerSide::filled(0.0, 4),
         1e-7,
     );
+    let bodies = Bodies {
+        grains: &grains,
+        sides: &sides,
+    };
     let contacts = sites
         .iter()
-        .map(|s| s.contact(Shaping::default(), &grains, PropertyId(0), 1.0))
+        .map(|s| s.contact(Shaping::default(), bodies, PropertyId(0), 1.0))
         .collect();
     Assembly {
         grains,

@@ -3,12 +3,10 @@
 use std::collections::HashMap;
 
 use kavics::assembly::{
-    Between, ContactGraph, ContactPoint, DualLength, Grain, Partner, Shaping, Side, Site,
+    Between, Bodies, ContactGraph, ContactPoint, DualLength, Grain, Partner, Shaping, Side, Site,
     box_sides, contact_graph, envelope,
 };
-use kavics::geometry::{
-    Container, Edges, Grid, HalfPlane, NearPair, PowerDiagram, Vector, power_diagram,
-};
+use kavics::geometry::{Container, Grid, HalfPlane, NearPair, PowerDiagram, Vector, power_diagram};
 use kavics::ids::{GrainId, PerGrain, PerSide, PropertyId, SideId};
 use kavics::packing::Sizes;
 use kavics::packing::dropped::{self, Bed, Shape};
@@ -53,7 +51,7 @@ impl Pack {
             outward: s.outward,
         };
         let container = Container::new(self.sides().map(half_plane).values());
-        power_diagram(&self.centres, &self.radii, &container, near, Edges::All)
+        power_diagram(&self.centres, &self.radii, &container, near)
     }
 
     fn grains(&self) -> PerGrain<Grain> {
@@ -405,8 +403,9 @@ fn hexagonal_lattices_have_their_dual_length() {
     check_all(&pack);
     check_contact_theorem(&pack);
     let graph = pack.graph(Between::Touching);
+    let (grains, sides) = (&pack.grains(), &pack.sides());
     let inner = |s: &&Site| {
-        let p = s.tangent_point(&pack.grains());
+        let p = s.tangent_point(Bodies { grains, sides });
         p.x > 2.6 && p.x < pack.width - 2.6 && p.y > 1.5 && p.y < pack.height - 1.5
     };
     let inner: Vec<_> = graph.sites.iter().filter(inner).collect();
@@ -514,10 +513,14 @@ fn reach_joins_grains_near_a_present_side() {
     // Gaps: 1 and 4 to the left, 7 and 1 to the right, 4 and 3 to bottom and top.
     let reach = PerSide::from(vec![1.5, 1.5, 2.5, 3.5]);
     let graph = contact_graph(&pack.grains(), &sides, Between::Touching, &reach, 1e-7);
+    let bodies = Bodies {
+        grains: &pack.grains(),
+        sides: &sides,
+    };
     let found: Vec<_> = graph
         .sites
         .iter()
-        .map(|s| (s.first, s.second, s.gap))
+        .map(|s| (s.first, s.second, s.branch(bodies).gap))
         .collect();
     let grain = |k| Partner::Grain(GrainId(k));
     let side = |k| Partner::Side(SideId(k));
@@ -529,13 +532,17 @@ fn shapings_of_a_pair_in_a_wide_box() {
     let pack = Pack::new(30.0, 30.0, &[(10.0, 12.0, 1.0), (15.0, 12.0, 4.0)]);
     let site = pack.graph(Between::Touching).sites[0];
     assert_eq!(site.edge_parts, [12.0, 18.0]);
-    assert_eq!(site.tangent_point(&pack.grains()), Vector::new(11.0, 12.0));
+    let bodies = Bodies {
+        grains: &pack.grains(),
+        sides: &pack.sides(),
+    };
+    assert_eq!(site.tangent_point(bodies), Vector::new(11.0, 12.0));
     let contact = |dual_length, contact_point| {
         let shaping = Shaping {
             dual_length,
             contact_point,
         };
-        site.contact(shaping, &pack.grains(), PropertyId(0), 1.0)
+        site.contact(shaping, bodies, PropertyId(0), 1.0)
     };
     // g = √(1·4) = 2.
     let capped = contact(DualLength::Capped, ContactPoint::Tangent);

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use kavics::geometry::{Container, Edges, Grid, PowerDiagram, Vector, power_diagram};
+use kavics::geometry::{Container, Grid, PowerDiagram, Vector, power_diagram};
 use kavics::packing::dropped::{self, Bed, Shape};
 use kavics::packing::{Mass, SieveCurve, Sizes};
 
@@ -75,7 +75,7 @@ fn diagram(discs: &Discs, margin: f64) -> PowerDiagram {
     let centres: Vec<_> = discs.iter().map(|d| Vector::new(d.0, d.1)).collect();
     let radii: Vec<_> = discs.iter().map(|d| d.2).collect();
     let near = Grid::new(&centres, &radii).near_pairs(1e-3);
-    power_diagram(&centres, &radii, &container, &near, Edges::All)
+    power_diagram(&centres, &radii, &container, &near)
 }
 
 fn extent(discs: &Discs, margin: f64) -> ((f64, f64), (f64, f64)) {

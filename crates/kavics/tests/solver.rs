@@ -311,3 +311,20 @@ fn no_unknowns_are_no_problem() {
     solver.solve(&mut []);
     assert_eq!(solver.flexibility::<2>(&[]), [[0.0; 2]; 2]);
 }
+
+#[test]
+fn the_factor_of_a_neighbouring_matrix_solves_after_corrections() {
+    let network = chain(6, 1.0);
+    let dense = network.dense();
+    // 1 % stiffer throughout: each correction leaves 1 − 1/1.01 of what there was.
+    let (mut solver, _) = network.solver(&(&dense * 1.01));
+    let right: Vec<f64> = (0..network.unknowns()).map(|i| 1.0 + i as f64).collect();
+    let mut x = right.clone();
+    let left = solver.solve_corrected(&mut x, |x, product| {
+        for (i, product) in product.iter_mut().enumerate() {
+            *product = x.iter().enumerate().map(|(j, x)| dense[(i, j)] * x).sum();
+        }
+    });
+    let expected = (1.0 - 1.0 / 1.01_f64).powi(3);
+    assert!((left / expected - 1.0).abs() < 1e-6, "{left}");
+}

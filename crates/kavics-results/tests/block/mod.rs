@@ -10,13 +10,15 @@ use kavics::contact_law::{
     StiffnessRule, Strength,
 };
 use kavics::equilibrium::{
-    ContactState, Displacement, Energy, Equilibrium, Event, EventKind, Freedom, Load, Settings,
-    State, Warning,
+    ContactState, Displacement, EigenMode, Energy, Equilibrium, Event, EventKind, Freedom, Load,
+    Settings, Stability, StabilitySummary, State, Warning,
 };
 use kavics::geometry::Vector;
 use kavics::ids::{BodyId, ContactId, GrainId, Id, PerBody, PerGrain, PropertyId, SideId};
 use kavics::loading::{Action, AppliedLoad, Breakage, Held, Program, Stage};
-use kavics::measure::{Measures, StressPartition, SymmetricTensor, Tensor};
+use kavics::measure::{
+    ElasticityTensor, Measures, Moduli, StressPartition, SymmetricTensor, Tensor,
+};
 use kavics::scene::Scene;
 use kavics_results::{Options, Results, RunState};
 
@@ -69,6 +71,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         },
         settings: Settings::default(),
         breakage: Breakage::default(),
+        control: kavics::loading::PathControl::default(),
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
         record_voids: false,
@@ -263,7 +266,36 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
         } else {
             Vec::new()
         },
-        iterates: Vec::new(),
+        stability: (step > 0 && scene.settings.modes > 0).then(|| stability(scene)),
+        ..Equilibrium::default()
+    }
+}
+
+/// One made-up mode: all rows slide, the farther up the more.
+fn stability(scene: &Scene) -> Stability {
+    let height = scene.assembly.sides[SideId(3)].middle().y;
+    let grains = scene.assembly.grains.values().iter();
+    let slide = grains.map(|grain| Displacement {
+        x: grain.centre.y / (height - 1.0),
+        y: 0.0,
+        rotation: 0.0,
+    });
+    let sides = scene.assembly.sides.values().iter();
+    Stability {
+        summary: StabilitySummary {
+            lowest_eigenvalue: Some(0.125),
+            static_indeterminacy: 90,
+            second_order_work: 0.5,
+            ..StabilitySummary::default()
+        },
+        modes: vec![EigenMode {
+            eigenvalue: 0.125,
+            participation: 20.0,
+            foremost: Vec::new(),
+            displacements: slide
+                .chain(sides.map(|_| Displacement::default()))
+                .collect(),
+        }],
     }
 }
 
@@ -368,6 +400,10 @@ pub fn measures(step: usize) -> Measures {
         contact_work: Some(8.4 * FACTORS[step] * FACTORS[step]),
         macroscopic_work: Some(8.1 * FACTORS[step] * FACTORS[step]),
         boundary_work: Some(0.3 * FACTORS[step] * FACTORS[step]),
+        moduli: Some(Moduli {
+            tangent: ElasticityTensor::isotropic(40.0, 20.0),
+            voigt: ElasticityTensor::isotropic(50.0, 40.0),
+        }),
     }
 }
 

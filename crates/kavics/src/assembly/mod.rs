@@ -6,14 +6,14 @@ mod contact_graph;
 mod container;
 mod envelope;
 mod outer_face;
+mod site;
 mod touching;
 
-pub use contact_graph::{
-    Between, ContactGraph, ContactPoint, DualLength, Shaping, Site, contact_graph,
-};
+pub use contact_graph::{Between, ContactGraph, contact_graph};
 pub use container::{box_sides, extents, middle, outside, overlaps, polygon_sides, twice_area};
 pub use envelope::{EnvelopePart, envelope};
 pub use outer_face::outer_grains;
+pub use site::{Bodies, Branch, ContactPoint, DualLength, Shaping, Site};
 pub use touching::{Touching, container, touching};
 
 use crate::geometry::Vector;

@@ -107,7 +107,9 @@ impl Edges {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::{Between, ContactGraph, Grain, Shaping, box_sides, contact_graph};
+    use crate::assembly::{
+        Between, Bodies, ContactGraph, Grain, Shaping, box_sides, contact_graph,
+    };
     use crate::geometry::Vector;
     use crate::ids::{PerGrain, PerSide, PropertyId};
 
@@ -137,9 +139,13 @@ mod tests {
             &PerSide::filled(0.0, 4),
             1e-7,
         );
+        let bodies = Bodies {
+            grains: &grains,
+            sides: &sides,
+        };
         let contacts = sites
             .iter()
-            .map(|site| site.contact(Shaping::default(), &grains, PropertyId(0), 1.0))
+            .map(|site| site.contact(Shaping::default(), bodies, PropertyId(0), 1.0))
             .collect();
         let assembly = Assembly {
             grains,

@@ -11,7 +11,7 @@ impl Cemented {
     /// N = k_n v_n + k_{n\varphi} v_\varphi,\quad T = k_t(v_n)\,v_t,\quad M = k_{n\varphi} v_n + k_m v_\varphi
     /// ```
     ///
-    /// with the readings of the shear term in `shear.rs`.
+    /// with the readings of the shear term in `shear.rs`; less what is lost where the bond softens (`softening.rs`).
     pub fn respond(
         &self,
         v: RelativeDisplacement,
@@ -26,7 +26,7 @@ impl Cemented {
         } else {
             shear.coupling
         };
-        Response {
+        let trial = Response {
             force: ContactForce {
                 normal: k.normal * v.normal + k.coupling * rotation + shear.thrust,
                 shear: shear.force,
@@ -42,6 +42,10 @@ impl Cemented {
                 [0.0, shear.secant, 0.0],
                 [k.coupling, 0.0, k.moment],
             ],
+        };
+        match &k.softening {
+            Some(softening) => softening.soften(&trial, v, k, memory),
+            None => trial,
         }
     }
 }

@@ -173,8 +173,8 @@ impl Cohesionless {
         memory: &ContactMemory,
     ) -> Dissipation {
         Dissipation {
-            friction: 0.0,
             nonpotential: shear::dissipation(self.reading, ends, k, memory),
+            ..Dissipation::default()
         }
     }
 
@@ -205,8 +205,8 @@ impl Cohesionless {
             ([&edge, ends[1]], -lost)
         };
         Dissipation {
-            friction: 0.0,
             nonpotential: lost + shear::dissipation(self.reading, closed, k, memory),
+            ..Dissipation::default()
         }
     }
 
@@ -257,6 +257,7 @@ fn slipping(ends: [&ContactInstant; 2], k: &Stiffness) -> Dissipation {
     Dissipation {
         friction: work.max(0.0),
         nonpotential: work.min(0.0) + spring,
+        fracture: 0.0,
     }
 }
 

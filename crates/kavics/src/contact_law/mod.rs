@@ -7,9 +7,11 @@
 mod cemented;
 mod cohesionless;
 mod shear;
+mod softening;
 mod stiffness;
 mod strength;
 
+pub use softening::{Damage, Softening};
 pub use stiffness::Stiffness;
 pub use strength::Limits;
 
@@ -131,6 +133,9 @@ pub struct Strength {
     pub shear: f64,
     /// Limit of bending.
     pub bending: f64,
+    /// Energy G_f, per area of the dual edge, that it takes to break the bond, which then softens beyond its limits,
+    /// `[force/length]`; none: it breaks at once.
+    pub fracture_energy: Option<f64>,
 }
 
 /// What the limits of a [`Strength`] are.
@@ -150,6 +155,7 @@ impl Strength {
         compression: f64::INFINITY,
         shear: f64::INFINITY,
         bending: f64::INFINITY,
+        fracture_energy: None,
     };
 }
 
@@ -166,7 +172,7 @@ pub enum Mode {
     Bending,
 }
 
-/// A bonded contact: normal force, shear force and moment; breaks when a component exceeds its limit.
+/// A bonded contact: normal force, shear force and moment; breaks when a component exceeds its limit, or softens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cemented {
     /// Stiffness.
@@ -213,6 +219,8 @@ pub struct ContactMemory {
     pub slip: f64,
     /// Relative rotation at which the contact came to be, dimensionless.
     pub rotation_origin: f64,
+    /// Of a softening bond.
+    pub damage: Damage,
 }
 
 /// A contact at an instant: where it stands, what it carries and how.
@@ -258,6 +266,8 @@ pub struct Dissipation {
     pub friction: f64,
     /// Work that a law without potential took (positive) or gave (negative).
     pub nonpotential: f64,
+    /// Energy that softening took.
+    pub fracture: f64,
 }
 
 /// A phase that a contact asks for, and how far the present one is from admissible, `[force]`.
@@ -295,11 +305,13 @@ impl Law {
         }
     }
 
-    /// Limits of the force components; none where nothing breaks.
+    /// Limits of the force components; none where nothing breaks at once.
     pub fn limits(&self, geometry: &ContactGeometry, factor: f64) -> Limits {
         match self {
-            Self::Cemented(law) => law.strength.limits(geometry, factor),
-            Self::Cohesionless(_) => Limits::UNBREAKABLE,
+            Self::Cemented(law) if law.strength.fracture_energy.is_none() => {
+                law.strength.limits(geometry, factor)
+            }
+            Self::Cemented(_) | Self::Cohesionless(_) => Limits::UNBREAKABLE,
         }
     }
 
@@ -319,7 +331,9 @@ impl Law {
     /// Whether the force is linear in the relative displacement.
     pub fn is_linear(&self) -> bool {
         match self {
-            Self::Cemented(law) => law.shear_hardening == 0.0,
+            Self::Cemented(law) => {
+                law.shear_hardening == 0.0 && law.strength.fracture_energy.is_none()
+            }
             Self::Cohesionless(_) => false,
         }
     }
@@ -366,11 +380,16 @@ impl Law {
             Self::Cemented(_) => memory.slip,
             Self::Cohesionless(law) => law.slip(v, force, k, memory, phase),
         };
+        let damage = k.softening.map_or(memory.damage, |softening| Damage {
+            dissipated: memory.damage.dissipated + softening.dissipation(v, k, memory),
+            ..softening.damage(v, k, memory)
+        });
         ContactMemory {
             displacement: v,
             force,
             phase,
             slip,
+            damage,
             ..*memory
         }
     }
@@ -385,6 +404,11 @@ impl Law {
     ) -> f64 {
         if force == ContactForce::default() {
             return 0.0;
+        }
+        if k.softening.is_some() {
+            // A secant law: half of force times displacement.
+            return 0.5
+                * (force.normal * v.normal + force.shear * v.shear + force.moment * v.rotation);
         }
         let rotation = v.rotation - memory.rotation_origin;
         let bending = 0.5 * k.moment * rotation * rotation + k.coupling * v.normal * rotation;
@@ -420,6 +444,11 @@ impl Law {
         match self {
             Self::Cemented(law) => Dissipation {
                 nonpotential: shear::dissipation(law.reading, ends, k, memory),
+                fracture: k.softening.map_or(0.0, |softening| {
+                    let [from, to] =
+                        ends.map(|end| softening.dissipation(end.displacement, k, memory));
+                    to - from
+                }),
                 friction: 0.0,
             },
             Self::Cohesionless(law) => law.dissipation(ends, k, memory),

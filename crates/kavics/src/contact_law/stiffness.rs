@@ -1,6 +1,6 @@
 //! From moduli and the dual edge to the stiffness of one contact. Bojtár & Bagi (1989), eq. 21.
 
-use super::{Cemented, Cohesionless, ContactGeometry, StiffnessRule};
+use super::{Cemented, Cohesionless, ContactGeometry, Softening, StiffnessRule};
 
 /// Stiffness of one contact in the undeformed assembly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,9 +17,20 @@ pub struct Stiffness {
     pub hardening: f64,
     /// The shear stiffness falls no lower, `[force/length]`; −∞ without a floor.
     pub shear_floor: f64,
+    /// How the bond softens; none: not at all.
+    pub softening: Option<Softening>,
 }
 
 impl Stiffness {
+    /// With the limits at which the bond begins to soften multiplied by its strength factor.
+    #[must_use]
+    pub fn with_strength_factor(mut self, factor: f64) -> Self {
+        if let Some(softening) = &mut self.softening {
+            softening.limits = softening.limits.scaled(factor);
+        }
+        self
+    }
+
     /// k_t at opening v_n: k_t = k_t0 − h·v_n, not below the floor.
     pub fn shear_at(&self, opening: f64) -> f64 {
         (self.shear - self.hardening * opening).max(self.shear_floor)
@@ -115,7 +126,7 @@ fn hardened(
 }
 
 impl Cemented {
-    /// Stiffness of a cemented contact.
+    /// Stiffness of a cemented contact; where it softens, with the limits at strength factor 1.
     pub fn stiffness(&self, geometry: &ContactGeometry) -> Stiffness {
         let rule = &self.stiffness;
         let plain = if self.eccentric {
@@ -123,7 +134,10 @@ impl Cemented {
         } else {
             rule.centred(geometry)
         };
-        hardened(plain, geometry, self.shear_hardening, self.shear_floor)
+        Stiffness {
+            softening: self.strength.softening(geometry),
+            ..hardened(plain, geometry, self.shear_hardening, self.shear_floor)
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Strength of a bond: limits of the force components, and how near a force is to them.
 
-use super::{ContactForce, ContactGeometry, Mode, Strength, StrengthKind};
+use super::{ContactForce, ContactGeometry, Mode, Softening, Strength, StrengthKind};
 
 /// Limits of the force components of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,17 @@ impl Limits {
         shear: f64::INFINITY,
         bending: f64::INFINITY,
     };
+
+    /// All limits multiplied by a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            tension: self.tension * factor,
+            compression: self.compression * factor,
+            shear: self.shear * factor,
+            bending: self.bending * factor,
+        }
+    }
 
     /// Utilisation: the largest share of its limit that a component has reached, and which; above 1 the bond breaks.
     ///
@@ -69,6 +80,15 @@ impl Strength {
             shear: self.shear * area,
             bending: self.bending * modulus,
         }
+    }
+
+    /// How a bond of strength factor 1 softens, G_f·s·H its energy; none where it breaks at once.
+    pub fn softening(&self, geometry: &ContactGeometry) -> Option<Softening> {
+        let area = geometry.dual_length() * geometry.thickness;
+        self.fracture_energy.map(|energy| Softening {
+            limits: self.limits(geometry, 1.0),
+            energy: energy * area,
+        })
     }
 }
 

@@ -187,7 +187,7 @@ impl System<'_> {
         }
     }
 
-    fn keep_iterate(&self, configuration: &Configuration, progress: &mut Progress) {
+    pub(super) fn keep_iterate(&self, configuration: &Configuration, progress: &mut Progress) {
         if self.settings.keep_iterates && progress.iterations > 0 {
             let (iteration, residual) = (progress.iterations, progress.residual);
             progress.iterates.push(Iterate {
@@ -250,7 +250,7 @@ impl System<'_> {
             .largest_length(self.moment_arm(BodyId::from_index(body)))
     }
 
-    fn advance(&self, configuration: &mut Configuration, step: &[f64]) {
+    pub(super) fn advance(&self, configuration: &mut Configuration, step: &[f64]) {
         for (body, numbers) in self.numbers.iter().enumerate() {
             if self.set_aside[body] {
                 continue;
@@ -279,7 +279,7 @@ fn linear_force(bond: &Bond, v: RelativeDisplacement, k: &Matrix) -> ContactForc
     }
 }
 
-fn not_converged(progress: &Progress, imbalance: &Imbalance) -> Failure {
+pub(super) fn not_converged(progress: &Progress, imbalance: &Imbalance) -> Failure {
     Failure::NotConverged {
         iterations: progress.iterations,
         residual: progress.residual,

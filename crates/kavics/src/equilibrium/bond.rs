@@ -3,8 +3,8 @@
 use super::ContactState;
 use crate::assembly::Contact;
 use crate::contact_law::{
-    ContactForce, ContactGeometry, ContactMemory, Law, Limits, Phase, Property,
-    RelativeDisplacement, Response, Stiffness,
+    ContactForce, ContactGeometry, ContactMemory, Law, Limits, Mode, Phase, Property,
+    RelativeDisplacement, Response, Softening, Stiffness,
 };
 use crate::ids::{PerProperty, PropertyId};
 
@@ -45,7 +45,9 @@ impl Bond {
         let law = &properties[contact.property].law;
         Self {
             property: Some(contact.property),
-            stiffness: law.stiffness(&geometry),
+            stiffness: law
+                .stiffness(&geometry)
+                .with_strength_factor(contact.strength_factor),
             limits: law.limits(&geometry, contact.strength_factor),
             memory: ContactMemory::default(),
             phase: Phase::Closed,
@@ -78,6 +80,17 @@ impl Bond {
         self.law(properties).map_or(0.0, |law| {
             law.energy(self.displacement, self.force, &self.stiffness, &self.memory)
         })
+    }
+
+    /// How it softens, while it holds.
+    pub fn softening(&self) -> Option<&Softening> {
+        self.property.and(self.stiffness.softening.as_ref())
+    }
+
+    /// Share of its force that a softening bond has left in the remembered state, and the mode that began it.
+    pub fn left(&self) -> Option<(f64, Mode)> {
+        let (left, mode) = self.softening()?.left(&self.stiffness, &self.memory);
+        Some((left, mode?))
     }
 
     /// Takes the present state for the remembered one.
@@ -115,7 +128,9 @@ impl Bond {
         if let Some(property) = successor {
             let geometry = geometry(contact, thickness);
             let law = &properties[property].law;
-            self.stiffness = law.stiffness(&geometry);
+            self.stiffness = law
+                .stiffness(&geometry)
+                .with_strength_factor(contact.strength_factor);
             self.limits = law.limits(&geometry, contact.strength_factor);
             if law.has_phases() && self.displacement.normal > 0.0 {
                 self.phase = Phase::Open;

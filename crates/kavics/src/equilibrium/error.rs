@@ -63,6 +63,22 @@ pub enum SolveError {
         /// The contact.
         contact: ContactId,
     },
+    /// The path beyond the peak took as many load steps as it may.
+    #[error(
+        "load step {step}: {most_steps} load steps of stage `{stage}` end at load factor {load_factor:.6}, before factor {wanted} is reached; `most_steps` allows more"
+    )]
+    MostSteps {
+        /// The load step that is not taken.
+        step: usize,
+        /// Factor of the last equilibrium.
+        load_factor: f64,
+        /// Name of the stage.
+        stage: String,
+        /// How many load steps it may take.
+        most_steps: usize,
+        /// The factor that was to be reached.
+        wanted: f64,
+    },
 }
 
 fn list(grains: &[GrainId]) -> String {

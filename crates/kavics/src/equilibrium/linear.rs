@@ -21,15 +21,7 @@ impl System<'_> {
         proximal: f64,
         progress: &mut Progress,
     ) -> Result<Vec<f64>, Singular> {
-        let mut right = vec![0.0; self.unknowns()];
-        for body in unbalanced.ids() {
-            let load = self.free_part(body, unbalanced[body]).components();
-            for (value, number) in load.into_iter().zip(&self.numbers[body.index()]) {
-                if let Some(number) = number {
-                    right[*number as usize] = value;
-                }
-            }
-        }
+        let mut right = self.right_side(unbalanced);
         progress.iterations += 1;
         if right.is_empty() {
             return Ok(right);
@@ -52,6 +44,44 @@ impl System<'_> {
             Ok(()) if right.iter().all(|value| value.is_finite()) => Ok(right),
             _ => Err(Singular),
         }
+    }
+
+    /// Two right sides with one iteration matrix: the steps that answer `unbalanced` and `other`.
+    pub(super) fn solve_pair(
+        &mut self,
+        configuration: &Configuration,
+        [unbalanced, other]: [&PerBody<Load>; 2],
+        iteration: Iteration,
+        progress: &mut Progress,
+    ) -> Result<[Vec<f64>; 2], Singular> {
+        // A factor of an earlier matrix would not do for both.
+        self.factored = None;
+        let first = self.solve(configuration, unbalanced, iteration, 0.0, progress)?;
+        let mut second = self.right_side(other);
+        if second.is_empty() {
+            return Ok([first, second]);
+        }
+        let general = iteration == Iteration::Tangent && self.is_unsymmetric(configuration);
+        if general {
+            self.general.as_ref().ok_or(Singular)?.solve(&mut second);
+        } else {
+            self.symmetric.as_mut().ok_or(Singular)?.solve(&mut second);
+        }
+        let finite = second.iter().all(|value| value.is_finite());
+        finite.then_some([first, second]).ok_or(Singular)
+    }
+
+    fn right_side(&self, unbalanced: &PerBody<Load>) -> Vec<f64> {
+        let mut right = vec![0.0; self.unknowns()];
+        for body in unbalanced.ids() {
+            let load = self.free_part(body, unbalanced[body]).components();
+            for (value, number) in load.into_iter().zip(&self.numbers[body.index()]) {
+                if let Some(number) = number {
+                    right[*number as usize] = value;
+                }
+            }
+        }
+        right
     }
 
     fn is_unsymmetric(&self, configuration: &Configuration) -> bool {

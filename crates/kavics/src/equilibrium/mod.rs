@@ -15,12 +15,13 @@ mod linear;
 mod search;
 mod sparsity;
 mod stability;
+pub(crate) mod steered;
 pub(crate) mod system;
 mod tangent;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
-pub use stability::{EigenMode, Stability, ZERO_EIGENVALUE, second_order_work};
+pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
 
 use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};
@@ -197,7 +198,7 @@ pub struct Energy {
     pub external_work: f64,
     /// Energy that the contacts hold now.
     pub elastic_energy: f64,
-    /// Energy of bonds at the moment they broke.
+    /// Energy of bonds at the moment they broke, and what softening takes.
     pub fracture_energy: f64,
     /// Work of friction.
     pub friction_work: f64,
@@ -267,6 +268,8 @@ pub enum Warning {
         /// Estimate of the error over the work of the load step.
         relative: f64,
     },
+    /// Nothing ties the loaded part to the supports any more; the path ends.
+    Separated,
 }
 
 /// An equilibrium: the end of a load step, or the undeformed state as step 0.

@@ -77,7 +77,7 @@ impl System<'_> {
     }
 
     /// The phase changes asked for, in groups of equal violation, the largest first.
-    fn violations(&self, configuration: &Configuration) -> Vec<Vec<(ContactId, Phase)>> {
+    pub(super) fn violations(&self, configuration: &Configuration) -> Vec<Vec<(ContactId, Phase)>> {
         let bonds = &configuration.bonds;
         let force = bonds
             .values()

@@ -21,8 +21,17 @@ pub const ZERO_EIGENVALUE: f64 = 1e-11;
 /// The stability of an equilibrium.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stability {
+    /// In numbers.
+    pub summary: StabilitySummary,
     /// The lowest modes, eigenvalues rising; as many as were asked for, or as there are freedoms.
     pub modes: Vec<EigenMode>,
+}
+
+/// The stability of an equilibrium in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StabilitySummary {
+    /// The lowest eigenvalue, `[force/length]`; none without a free freedom.
+    pub lowest_eigenvalue: Option<f64>,
     /// Eigenvalues below zero, of all: the directions in which the equilibrium is unstable.
     pub negative_eigenvalues: usize,
     /// Eigenvalues that are zero, of all: floppy modes and rigid motions.
@@ -80,13 +89,16 @@ impl System<'_> {
         let determined = weights.len() - zero;
         let modes = pairs.values.iter().zip(&pairs.vectors);
         Ok(Stability {
+            summary: StabilitySummary {
+                lowest_eigenvalue: pairs.values.first().copied(),
+                negative_eigenvalues: negative,
+                zero_eigenvalues: zero,
+                static_indeterminacy: carried as i64 - determined as i64,
+                second_order_work: 0.0,
+            },
             modes: modes
                 .map(|(&value, x)| self.mode(value, as_displacements(&numbers, x)))
                 .collect(),
-            negative_eigenvalues: negative,
-            zero_eigenvalues: zero,
-            static_indeterminacy: carried as i64 - determined as i64,
-            second_order_work: 0.0,
         })
     }
 

@@ -86,7 +86,7 @@ impl Container {
 
     /// Largest extent along an axis, `[length]`.
     pub fn size(&self) -> f64 {
-        let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
+        let (low, high) = super::spatial_order::extent(self.corners.iter().copied());
         (high.x - low.x).max(high.y - low.y)
     }
 
@@ -98,7 +98,7 @@ impl Container {
 
     /// The middle of the extents.
     pub(super) fn middle(&self) -> Vector {
-        let (low, high) = super::near_pairs::extent(self.corners.iter().copied());
+        let (low, high) = super::spatial_order::extent(self.corners.iter().copied());
         (low + high) * 0.5
     }
 

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::geometry::container::{Container, HalfPlane};
 use crate::geometry::embedding::Embedding;
+use crate::geometry::face::Triangulation;
 use crate::geometry::faces::{Faces, fingerprint, lowest_first};
 use crate::geometry::lifted::Lifted;
 use crate::geometry::near_pairs::{Disc, Grid};
@@ -48,29 +49,34 @@ pub(super) struct Clipping<'a> {
     pub(super) container: &'a Container,
     pub(super) size: f64,
     pub(super) grid: &'a Grid,
-    pub(super) lifted: Lifted<'a>,
+    pub(super) lifted: &'a Lifted<'a>,
 }
 
 impl Clipping<'_> {
     /// Cuts out the cells of the open discs, and of those around them that then turn out to be wrong.
-    pub(super) fn open_cells(&self, faces: &mut Faces, graph: &Embedding) -> CutOut {
+    pub(super) fn open_cells(
+        &self,
+        faces: &mut Faces,
+        triangulation: &Triangulation<'_>,
+    ) -> CutOut {
+        let graph = triangulation.graph;
         let all = 0..self.grid.discs.len() as u32;
-        let mut wanted: Vec<u32> = all.filter(|&i| faces.cells[i as usize].open).collect();
+        let mut wanted: Vec<u32> = all.filter(|&i| faces.open[i as usize]).collect();
         let mut cut: Vec<CutCell> = Vec::new();
         while !wanted.is_empty() {
             let mut doubted = Vec::new();
             for cell in self.cells(&wanted, graph) {
-                let of_faces = &mut faces.cells[cell.disc as usize];
-                if of_faces.open || of_faces.fingerprint != cell.fingerprint {
+                let open = &mut faces.open[cell.disc as usize];
+                if *open || triangulation.fingerprint_at(cell.disc) != cell.fingerprint {
                     doubted.extend_from_slice(&cell.neighbours);
                 }
-                of_faces.open = true;
+                *open = true;
                 cut.push(cell);
             }
             doubted.sort_unstable();
             doubted.dedup();
             wanted = doubted;
-            wanted.retain(|&disc| !faces.cells[disc as usize].open);
+            wanted.retain(|&disc| !faces.open[disc as usize]);
         }
         cut.sort_unstable_by_key(|cell| cell.disc);
         let mut out = CutOut::default();
@@ -117,7 +123,7 @@ impl Clipping<'_> {
         let gaps = std::mem::take(&mut cut.gaps);
         let middle = self.container.middle();
         let within = OUTSIDE * self.size;
-        if let Some(found) = outer_triangles(gaps, &self.grid.discs, &self.lifted) {
+        if let Some(found) = outer_triangles(gaps, &self.grid.discs, self.lifted) {
             let near = found
                 .iter()
                 .filter(|t| (t.centre - middle).length() < within);
@@ -131,8 +137,8 @@ impl Clipping<'_> {
     /// The same, where the gaps do not fit together: from cells that reach far out. Cells that meet there reach
     /// through the container's boundary, each from its own centre, so only those can own or cut one.
     fn far_triangles(&self, at_boundary: &[u32], graph: &Embedding) -> Vec<[u32; 3]> {
-        let of_boundary = at_boundary.iter().map(|&k| self.grid.discs[k as usize]);
-        let grid = Grid::of_discs(of_boundary.collect());
+        let of_boundary = |k: u32| self.grid.discs[at_boundary[k as usize] as usize];
+        let (grid, _) = Grid::of(at_boundary.len(), of_boundary);
         let of_disc = |cell: &mut Cell, &index: &u32| {
             let disc = &self.grid.discs[index as usize];
             self.start(disc, OUTSIDE * self.size, cell);
@@ -167,7 +173,7 @@ impl Clipping<'_> {
                     2.0 * done
                 };
                 let distance = if step > 0.0 { reach.min(step) } else { reach };
-                for other in level.around(disc.centre, distance).flatten() {
+                for other in grid.around(level, disc.centre, distance).flatten() {
                     self.cut(disc, other, cell);
                 }
                 done = distance;
@@ -203,7 +209,7 @@ impl Clipping<'_> {
                 cell.clear();
             }
         } else if cell.edges.iter().all(|e| e.line.tag != other.index) {
-            cell.cut(&line, disc.index, &self.lifted);
+            cell.cut(&line, disc.index, self.lifted);
         }
     }
 

@@ -25,49 +25,39 @@ pub struct HalfEdge {
 #[derive(Clone, Debug, Default)]
 pub struct Embedding {
     start: Vec<u32>,
-    half_edges: Vec<HalfEdge>,
-    /// Both slots of each edge.
-    slots: Vec<u32>,
+    /// The node each half-edge goes to.
+    to: Vec<u32>,
+    /// The slot of its way back.
+    twin: Vec<u32>,
 }
 
 impl Embedding {
     /// The embedding of the graph with nodes at `points` and these edges between different nodes; O(N).
     pub fn new(points: &[Vector], edges: &[[u32; 2]]) -> Self {
-        Self::of(points, edges.iter().copied())
+        let point = |node: u32| points[node as usize];
+        Self::of(points.len(), point, edges.iter().copied())
     }
 
-    /// The same of edges that come one by one.
+    /// The same of so many nodes at these points, and edges that come one by one.
     pub(super) fn of(
-        points: &[Vector],
-        edges: impl ExactSizeIterator<Item = [u32; 2]> + Clone,
+        nodes: usize,
+        point: impl Fn(u32) -> Vector + Sync,
+        edges: impl Iterator<Item = [u32; 2]> + Clone,
     ) -> Self {
-        let start = starts(points.len(), edges.clone());
-        // At first `twin` is the number of the edge, doubled, and one more for the way back.
-        let mut half_edges = vec![HalfEdge::default(); 2 * edges.len()];
+        let start = starts(nodes, edges.clone());
+        let mut to = vec![0; start[nodes] as usize];
         let mut next = start.clone();
-        for (k, [i, j]) in edges.enumerate() {
-            let number = 2 * k as u32;
-            for (from, to, twin) in [(i, j, number), (j, i, number + 1)] {
+        for [i, j] in edges {
+            for (from, end) in [(i, j), (j, i)] {
                 let place = &mut next[from as usize];
-                half_edges[*place as usize] = HalfEdge { to, twin };
+                to[*place as usize] = end;
                 *place += 1;
             }
         }
         drop(next);
-        sort_stars(points, &start, &mut half_edges);
-        let mut slots = vec![0; half_edges.len()];
-        for (place, half_edge) in half_edges.iter().enumerate() {
-            slots[half_edge.twin as usize] = place as u32;
-        }
-        let link = |half_edge: &mut HalfEdge| half_edge.twin = slots[half_edge.twin as usize ^ 1];
-        half_edges
-            .par_chunks_mut(4 * NODES_A_TASK)
-            .for_each(|chunk| chunk.iter_mut().for_each(link));
-        Self {
-            start,
-            half_edges,
-            slots,
-        }
+        sort_stars(&point, &start, &mut to);
+        let twin = twins(&start, &to);
+        Self { start, to, twin }
     }
 
     /// Number of nodes.
@@ -85,26 +75,41 @@ impl Embedding {
         self.start[node as usize]..self.start[node as usize + 1]
     }
 
-    /// All half-edges by their slots.
-    pub fn half_edges(&self) -> &[HalfEdge] {
-        &self.half_edges
+    /// The half-edge in a slot.
+    pub fn half_edge(&self, slot: u32) -> HalfEdge {
+        HalfEdge {
+            to: self.to[slot as usize],
+            twin: self.twin[slot as usize],
+        }
     }
 
-    /// The slots of an edge: from its first node, and from its second.
-    pub fn slots(&self, edge: usize) -> [u32; 2] {
-        [self.slots[2 * edge], self.slots[2 * edge + 1]]
+    /// Number of half-edges.
+    pub fn half_edges(&self) -> usize {
+        self.to.len()
+    }
+
+    /// The slots of an edge, one that leaves its first node and the way back; none where there is no such edge.
+    pub fn slots(&self, [first, second]: [u32; 2]) -> Option<[u32; 2]> {
+        let slot = self.slot(first, second)?;
+        Some([slot, self.twin[slot as usize]])
+    }
+
+    /// The first slot from one node to another.
+    pub(super) fn slot(&self, from: u32, to: u32) -> Option<u32> {
+        self.star(from).find(|&slot| self.to[slot as usize] == to)
     }
 
     /// The nodes that a node has an edge with.
     pub fn neighbours(&self, node: u32) -> impl Iterator<Item = u32> {
         let star = self.star(node);
-        let half_edges = &self.half_edges[star.start as usize..star.end as usize];
-        half_edges.iter().map(|half_edge| half_edge.to)
+        self.to[star.start as usize..star.end as usize]
+            .iter()
+            .copied()
     }
 
     /// The next half-edge along the face on the left of one.
     pub fn next(&self, slot: u32) -> u32 {
-        let HalfEdge { to, twin } = self.half_edges[slot as usize];
+        let HalfEdge { to, twin } = self.half_edge(slot);
         let star = self.star(to);
         if twin == star.start {
             star.end - 1
@@ -127,33 +132,30 @@ fn starts(nodes: usize, edges: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
 }
 
 /// Sorts each star by the directions of its half-edges; equal directions by the nodes they go to.
-fn sort_stars(points: &[Vector], start: &[u32], half_edges: &mut [HalfEdge]) {
-    let tasks = by_nodes(start, half_edges);
+fn sort_stars(point: &(impl Fn(u32) -> Vector + Sync), start: &[u32], to: &mut [u32]) {
+    let tasks = by_nodes(start, to);
     tasks.into_par_iter().for_each(|(nodes, mut own)| {
-        let mut sorted: Vec<(f64, HalfEdge)> = Vec::new();
+        let mut sorted: Vec<(f64, u32)> = Vec::new();
         for node in nodes {
             let star;
             (star, own) = own.split_at_mut((start[node + 1] - start[node]) as usize);
-            let direction = |half_edge: &HalfEdge| {
-                let along = points[half_edge.to as usize] - points[node];
-                (pseudo_angle(along), *half_edge)
-            };
+            let centre = point(node as u32);
+            let direction = |&end: &u32| (pseudo_angle(point(end) - centre), end);
             sorted.clear();
             sorted.extend(star.iter().map(direction));
             sort_by_direction(&mut sorted);
-            for (half_edge, (_, by_angle)) in star.iter_mut().zip(&sorted) {
-                *half_edge = *by_angle;
+            for (end, (_, by_direction)) in star.iter_mut().zip(&sorted) {
+                *end = *by_direction;
             }
         }
     });
 }
 
 /// Equal directions by the nodes they go to; insertion, as stars are small.
-fn sort_by_direction(star: &mut [(f64, HalfEdge)]) {
-    let after =
-        |a: &(f64, HalfEdge), b: &(f64, HalfEdge)| a.0 > b.0 || a.0 == b.0 && a.1.to > b.1.to;
+fn sort_by_direction(star: &mut [(f64, u32)]) {
+    let after = |a: &(f64, u32), b: &(f64, u32)| a.0 > b.0 || a.0 == b.0 && a.1 > b.1;
     if star.len() > 32 {
-        star.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.to.cmp(&b.1.to)));
+        star.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         return;
     }
     for k in 1..star.len() {
@@ -165,6 +167,32 @@ fn sort_by_direction(star: &mut [(f64, HalfEdge)]) {
         }
         star[place] = item;
     }
+}
+
+/// The way back of each half-edge; of several edges between two nodes, the first at one end is the last at the other.
+fn twins(start: &[u32], to: &[u32]) -> Vec<u32> {
+    let star = |node: u32| start[node as usize] as usize..start[node as usize + 1] as usize;
+    let mut twins = vec![0; to.len()];
+    let tasks = by_nodes(start, &mut twins);
+    tasks.into_par_iter().for_each(|(nodes, own)| {
+        let mut places = own.iter_mut();
+        for node in nodes.start as u32..nodes.end as u32 {
+            for (slot, twin) in star(node).zip(&mut places) {
+                let before = &to[star(node).start..slot];
+                let back = star(to[slot]);
+                *twin = if before.last() == Some(&to[slot]) {
+                    let same = before.iter().rev().take_while(|&&end| end == to[slot]);
+                    let mut back = back.rev().filter(|&back| to[back] == node);
+                    back.nth(same.count()).unwrap_or_default() as u32
+                } else {
+                    // The last one, without a jump that cannot be foreseen.
+                    let last = |found, place| if to[place] == node { place } else { found };
+                    back.fold(0, last) as u32
+                };
+            }
+        }
+    });
+    twins
 }
 
 /// Cuts what belongs to the slots into the parts of one task each, with the nodes they leave.
@@ -216,7 +244,7 @@ mod tests {
         let mut slot = from;
         loop {
             slot = graph.next(slot);
-            nodes.push(graph.half_edges()[slot as usize].to);
+            nodes.push(graph.half_edge(slot).to);
             if slot == from {
                 return nodes;
             }
@@ -226,7 +254,7 @@ mod tests {
     #[test]
     fn the_face_on_the_left_of_an_edge_is_walked_around() {
         let graph = kite();
-        let [forward, back] = graph.slots(0);
+        let [forward, back] = graph.slots([0, 1]).unwrap();
         assert_eq!(walk(&graph, forward), [2, 3, 0, 1]);
         // Around the outside, with both sides of the tail.
         assert_eq!(walk(&graph, back), [3, 2, 4, 2, 1, 0]);

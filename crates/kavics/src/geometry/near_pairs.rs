@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::geometry::Vector;
+use crate::geometry::spatial_order::{Extent, by_cells};
 
 /// Discs that one task looks at; fixed, so that the result does not depend on the number of threads.
 const DISCS_A_TASK: usize = 8192;
@@ -35,56 +36,26 @@ pub struct NearPair {
     pub gap: f64,
 }
 
-/// Discs of similar radii, sorted by square cells; a row of cells is one contiguous range of discs.
-#[derive(Clone, Debug)]
+/// Square cells for discs of similar radii.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Level {
     origin: Vector,
     cells_a_length: f64,
     columns: usize,
     rows: usize,
-    start: Vec<u32>,
-    discs: Vec<Disc>,
+    /// Its first cell among those of all levels.
+    first_cell: usize,
     pub(super) largest_radius: f64,
 }
 
 impl Level {
-    /// Counting sort by cells, stable.
-    fn new(discs: &[Disc]) -> Self {
-        let mut level = Self::cells(discs);
-        let mut start = vec![0_u32; level.columns * level.rows + 1];
-        for disc in discs {
-            start[level.cell(disc) + 1] += 1;
-        }
-        for c in 1..start.len() {
-            start[c] += start[c - 1];
-        }
-        let none = Disc {
-            centre: Vector::default(),
-            radius: 0.0,
-            index: 0,
-        };
-        let mut sorted = vec![none; discs.len()];
-        for disc in discs {
-            // Starts move to the ends, which are the starts of the next cells.
-            let place = &mut start[level.cell(disc)];
-            sorted[*place as usize] = *disc;
-            *place += 1;
-        }
-        start.rotate_right(1);
-        start[0] = 0;
-        level.start = start;
-        level.discs = sorted;
-        level
-    }
-
-    /// Cells of at least the largest diameter, not more than two a disc; yet without discs.
-    fn cells(discs: &[Disc]) -> Self {
-        let (low, high) = extent(discs.iter().map(|d| d.centre));
+    /// Cells of at least the largest diameter, not more than two a disc.
+    fn new(span: &Span, first_cell: usize) -> Self {
+        let (low, high) = span.extent.ends();
         let (width, height) = (high.x - low.x, high.y - low.y);
-        let largest_radius = discs.iter().fold(0.0, |m: f64, d| m.max(d.radius));
-        let cells = 2.0 * discs.len() as f64;
+        let cells = 2.0 * span.discs as f64;
         // A little more than a diameter, so that what nearly touches lies in neighbouring cells.
-        let cell = (2.05 * largest_radius)
+        let cell = (2.05 * span.largest_radius)
             .max((width * height / cells).sqrt())
             .max(width.max(height) / cells);
         let cell = if cell > 0.0 { cell } else { 1.0 };
@@ -93,14 +64,14 @@ impl Level {
             cells_a_length: 1.0 / cell,
             columns: (width / cell) as usize + 1,
             rows: (height / cell) as usize + 1,
-            start: Vec::new(),
-            discs: Vec::new(),
-            largest_radius,
+            first_cell,
+            largest_radius: span.largest_radius,
         }
     }
 
-    fn cell(&self, disc: &Disc) -> usize {
-        self.row(disc.centre.y) * self.columns + self.column(disc.centre.x)
+    /// Among those of all levels.
+    fn cell(&self, centre: Vector) -> usize {
+        self.first_cell + self.row(centre.y) * self.columns + self.column(centre.x)
     }
 
     fn column(&self, x: f64) -> usize {
@@ -110,155 +81,222 @@ impl Level {
     fn row(&self, y: f64) -> usize {
         (((y - self.origin.y) * self.cells_a_length).max(0.0) as usize).min(self.rows - 1)
     }
+}
 
-    /// The discs with their centre in a square, and some around it, row by row.
-    pub(super) fn around(&self, centre: Vector, distance: f64) -> impl Iterator<Item = &[Disc]> {
-        let columns = (
-            self.column(centre.x - distance),
-            self.column(centre.x + distance),
-        );
-        (self.row(centre.y - distance)..=self.row(centre.y + distance)).map(move |row| {
-            let first = row * self.columns;
-            let from = self.start[first + columns.0] as usize;
-            let to = self.start[first + columns.1 + 1] as usize;
-            &self.discs[from..to]
-        })
+/// How far the discs of one level reach.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    extent: Extent,
+    discs: usize,
+    largest_radius: f64,
+}
+
+impl Span {
+    fn add(&mut self, other: &Self) {
+        self.extent.add(&other.extent);
+        self.discs += other.discs;
+        self.largest_radius = self.largest_radius.max(other.largest_radius);
     }
 }
 
-/// Cell grids of discs, one for each two octaves of the radius.
+/// Discs sorted by cells, one grid of cells for each two octaves of the radius; a row of cells is one contiguous
+/// range of discs.
 #[derive(Clone, Debug)]
 pub struct Grid {
     pub(super) discs: Vec<Disc>,
     pub(super) levels: Vec<Level>,
+    /// The first disc of each cell, level by level.
+    start: Vec<u32>,
 }
 
 impl Grid {
     /// The grid of the discs with these centres and radii; O(N).
     pub fn new(centres: &[Vector], radii: &[f64]) -> Self {
-        let disc = |(index, (&centre, &radius))| Disc {
-            centre,
-            radius,
-            index: index as u32,
+        let disc = |index: u32| Disc {
+            centre: centres[index as usize],
+            radius: radii[index as usize],
+            index,
         };
-        Self::of_discs(centres.iter().zip(radii).enumerate().map(disc).collect())
+        Self::of(centres.len().min(radii.len()), disc).0
     }
 
-    /// The grid of these discs, each with its place among them as number; O(N).
-    pub fn of_discs(discs: Vec<Disc>) -> Self {
-        let smallest = discs.iter().map(|disc| octave(disc.radius)).min();
-        let size = |disc: &Disc| ((octave(disc.radius) - smallest.unwrap_or(0)) / OCTAVES) as usize;
-        let mut counts = vec![0_usize; 1 << 12];
-        for disc in &discs {
-            counts[size(disc)] += 1;
+    /// The grid of `count` discs, and which of them is at each of its places, so that neighbours come near each other;
+    /// O(N).
+    pub fn of(count: usize, disc: impl Fn(u32) -> Disc + Sync) -> (Self, Vec<u32>) {
+        let all = 0..count as u32;
+        let smallest = all.clone().into_par_iter().map(|k| octave(disc(k).radius));
+        let smallest = smallest.min().unwrap_or(0);
+        let size = |disc: &Disc| ((octave(disc.radius) - smallest) / OCTAVES) as usize;
+        let spans = spans(&all, |k| {
+            let disc = disc(k);
+            (size(&disc), disc)
+        });
+        let mut levels: Vec<Level> = Vec::new();
+        let mut level_of_size = vec![0; spans.len()];
+        let mut cells = 0;
+        for (size, span) in spans.iter().enumerate().filter(|(_, span)| span.discs > 0) {
+            level_of_size[size] = levels.len();
+            levels.push(Level::new(span, cells));
+            cells += levels[levels.len() - 1].columns * levels[levels.len() - 1].rows;
         }
-        let one_size = counts[0] == discs.len();
-        let levels = if one_size && !discs.is_empty() {
-            vec![Level::new(&discs)]
-        } else {
-            let mut sizes: Vec<_> = counts.iter().map(|&n| Vec::with_capacity(n)).collect();
-            for disc in &discs {
-                sizes[size(disc)].push(*disc);
-            }
-            sizes.retain(|discs| !discs.is_empty());
-            sizes.par_iter().map(|discs| Level::new(discs)).collect()
+        let cell = |k| {
+            let disc = disc(k);
+            levels[level_of_size[size(&disc)]].cell(disc.centre) as u32
         };
-        Self { discs, levels }
+        let cell_of_disc: Vec<u32> = all.into_par_iter().map(cell).collect();
+        let (start, order) = by_cells(&cell_of_disc, cells);
+        drop(cell_of_disc);
+        let discs = order.par_iter().map(|&k| disc(k)).collect();
+        let grid = Self {
+            discs,
+            levels,
+            start,
+        };
+        (grid, order)
+    }
+
+    /// The same grid with discs that are known by their places in it.
+    #[must_use]
+    pub fn known_by_places(mut self) -> Self {
+        let places = self.discs.par_iter_mut().enumerate();
+        places.for_each(|(place, disc)| disc.index = place as u32);
+        self
     }
 
     /// All pairs whose gap is at most `reach`, by (first, second); O(N) for discs that hardly overlap, and the sort.
     pub fn near_pairs(&self, reach: f64) -> Vec<NearPair> {
-        let mut pairs = self.near_pairs_by_cells(reach);
+        let pair = |pairs: &mut Vec<NearPair>, disc: &Disc, other: &Disc, gap: f64| {
+            pairs.push(NearPair {
+                first: disc.index.min(other.index),
+                second: disc.index.max(other.index),
+                gap,
+            });
+        };
+        let mut pairs = self.near(reach, pair).concat();
         pairs.par_sort_unstable_by_key(|pair| (pair.first, pair.second));
         pairs
     }
 
-    /// The same pairs level by level in the order of their cells.
-    pub fn near_pairs_by_cells(&self, reach: f64) -> Vec<NearPair> {
-        let tasks: Vec<(usize, Range<usize>)> = self.tasks().collect();
+    /// What `visit` makes of the pairs whose gap is at most `reach`, task by task; of the two discs, the one at the
+    /// lower place comes first, and rises.
+    pub(super) fn near<T: Default + Send>(
+        &self,
+        reach: f64,
+        visit: impl Fn(&mut T, &Disc, &Disc, f64) + Sync,
+    ) -> Vec<T> {
         let of_task = |(level, rows): (usize, Range<usize>)| {
-            let discs = self.levels[level].of_rows(&rows);
-            let mut pairs = Vec::with_capacity(2 * discs.len() + 64);
+            let mut found = T::default();
             for row in rows {
-                self.levels[level].near_pairs(row, reach, &mut pairs);
+                let visit = |disc: &Disc, other: &Disc, gap| visit(&mut found, disc, other, gap);
+                self.near_of_row(level, row, reach, visit);
             }
-            for coarser in &self.levels[level + 1..] {
-                for disc in discs {
-                    coarser.near_pairs_with(disc, reach, &mut pairs);
-                }
-            }
-            pairs
+            found
         };
-        let found: Vec<Vec<NearPair>> = tasks.into_par_iter().map(of_task).collect();
-        found.concat()
+        let tasks: Vec<(usize, Range<usize>)> = self.tasks().collect();
+        tasks.into_par_iter().map(of_task).collect()
     }
 
     /// The levels, in stretches of rows of cells with about the same number of discs.
     fn tasks(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
         self.levels.iter().enumerate().flat_map(|(k, level)| {
-            let rows_a_task = (level.rows * DISCS_A_TASK).div_ceil(level.discs.len().max(1));
+            let discs = self.of_cells(level, 0, 0, level.columns * level.rows - 1);
+            let rows_a_task = (level.rows * DISCS_A_TASK).div_ceil(discs.len().max(1));
             let firsts = (0..level.rows).step_by(rows_a_task.max(1));
             firsts.map(move |row| (k, row..(row + rows_a_task).min(level.rows)))
         })
     }
-}
 
-impl Level {
-    /// The discs of some rows of cells.
-    fn of_rows(&self, rows: &Range<usize>) -> &[Disc] {
-        let [from, to] = [rows.start, rows.end].map(|row| self.start[row * self.columns] as usize);
-        &self.discs[from..to]
+    /// The places of the discs in some cells of a row.
+    fn of_cells(&self, level: &Level, row: usize, first: usize, last: usize) -> Range<usize> {
+        let row = level.first_cell + row * level.columns;
+        self.start[row + first] as usize..self.start[row + last + 1] as usize
     }
 
-    /// The discs of the cells from `first` to `last` of a row.
-    fn of_cells(&self, row: usize, first: usize, last: usize) -> Range<usize> {
-        let cell = row * self.columns;
-        self.start[cell + first] as usize..self.start[cell + last + 1] as usize
-    }
-
-    /// The pairs of the discs in a row of cells with those after them: in the row, and in the rows above.
-    fn near_pairs(&self, row: usize, reach: f64, pairs: &mut Vec<NearPair>) {
-        let farthest = (2.0 * self.largest_radius + reach).max(0.0) * (1.0 + 1e-9);
-        let rings = (farthest * self.cells_a_length) as usize + 1;
-        let last_row = row.saturating_add(rings).min(self.rows - 1);
-        for column in 0..self.columns {
-            let own = self.of_cells(row, column, column);
-            if own.is_empty() {
-                continue;
-            }
+    /// The pairs of the discs in a row of cells with those after them: in the row, in the rows above, and in the
+    /// coarser levels.
+    fn near_of_row(
+        &self,
+        level: usize,
+        row: usize,
+        reach: f64,
+        mut visit: impl FnMut(&Disc, &Disc, f64),
+    ) {
+        let (own_level, coarser) = (&self.levels[level], &self.levels[level + 1..]);
+        let farthest = (2.0 * own_level.largest_radius + reach).max(0.0) * (1.0 + 1e-9);
+        let rings = (farthest * own_level.cells_a_length) as usize + 1;
+        let last_row = row.saturating_add(rings).min(own_level.rows - 1);
+        for column in 0..own_level.columns {
             let first = column.saturating_sub(rings);
-            let last = column.saturating_add(rings).min(self.columns - 1);
-            let ahead = self.of_cells(row, column, last).end;
-            for k in own {
+            let last = column.saturating_add(rings).min(own_level.columns - 1);
+            let ahead = self.of_cells(own_level, row, column, last).end;
+            for k in self.of_cells(own_level, row, column, column) {
                 let disc = &self.discs[k];
-                add_near(disc, &self.discs[k + 1..ahead], reach, pairs);
+                each_near(disc, &self.discs[k + 1..ahead], reach, &mut visit);
                 for above in row + 1..=last_row {
-                    let others = self.of_cells(above, first, last);
-                    add_near(disc, &self.discs[others], reach, pairs);
+                    let others = self.of_cells(own_level, above, first, last);
+                    each_near(disc, &self.discs[others], reach, &mut visit);
+                }
+                for level in coarser {
+                    let distance = (disc.radius + level.largest_radius + reach).max(0.0);
+                    for others in self.around(level, disc.centre, distance * (1.0 + 1e-9)) {
+                        each_near(disc, others, reach, &mut visit);
+                    }
                 }
             }
         }
     }
 
-    /// The pairs of one disc with those of this level.
-    fn near_pairs_with(&self, disc: &Disc, reach: f64, pairs: &mut Vec<NearPair>) {
-        let distance = (disc.radius + self.largest_radius + reach).max(0.0);
-        for row in self.around(disc.centre, distance * (1.0 + 1e-9)) {
-            add_near(disc, row, reach, pairs);
+    /// The discs of a level with their centre in a square, and some around it, row by row.
+    pub(super) fn around(
+        &self,
+        level: &Level,
+        centre: Vector,
+        distance: f64,
+    ) -> impl Iterator<Item = &[Disc]> {
+        let first = level.column(centre.x - distance);
+        let last = level.column(centre.x + distance);
+        let rows = level.row(centre.y - distance)..=level.row(centre.y + distance);
+        rows.map(move |row| &self.discs[self.of_cells(level, row, first, last)])
+    }
+}
+
+/// How far the discs of each size reach.
+fn spans(all: &Range<u32>, disc: impl Fn(u32) -> (usize, Disc) + Sync) -> Vec<Span> {
+    let of_task = |first: u32| {
+        let mut spans = Vec::new();
+        for k in first..(first + DISCS_A_TASK as u32).min(all.end) {
+            let (size, disc) = disc(k);
+            if size >= spans.len() {
+                spans.resize(size + 1, Span::default());
+            }
+            spans[size].add(&Span {
+                extent: Extent::of(disc.centre),
+                discs: 1,
+                largest_radius: disc.radius,
+            });
+        }
+        spans
+    };
+    let firsts = all.clone().into_par_iter().step_by(DISCS_A_TASK);
+    firsts.map(of_task).reduce(Vec::new, |mut one, other| {
+        one.resize(one.len().max(other.len()), Span::default());
+        for (span, other) in one.iter_mut().zip(&other) {
+            span.add(other);
+        }
+        one
+    })
+}
+
+fn each_near(disc: &Disc, others: &[Disc], reach: f64, visit: &mut impl FnMut(&Disc, &Disc, f64)) {
+    for other in others {
+        if let Some(gap) = gap_within(disc, other, reach) {
+            visit(disc, other, gap);
         }
     }
 }
 
-fn add_near(disc: &Disc, others: &[Disc], reach: f64, pairs: &mut Vec<NearPair>) {
-    pairs.extend(
-        others
-            .iter()
-            .filter_map(|other| near_pair(disc, other, reach)),
-    );
-}
-
-/// The pair of two discs, if their gap is at most `reach`.
-fn near_pair(disc: &Disc, other: &Disc, reach: f64) -> Option<NearPair> {
+/// The gap between two discs, if it is at most `reach`.
+fn gap_within(disc: &Disc, other: &Disc, reach: f64) -> Option<f64> {
     let squared = (other.centre - disc.centre).length_squared();
     let radii = disc.radius + other.radius;
     let bound = radii + reach;
@@ -266,61 +304,12 @@ fn near_pair(disc: &Disc, other: &Disc, reach: f64) -> Option<NearPair> {
         return None;
     }
     let gap = squared.sqrt() - radii;
-    (gap <= reach).then(|| NearPair {
-        first: disc.index.min(other.index),
-        second: disc.index.max(other.index),
-        gap,
-    })
+    (gap <= reach).then_some(gap)
 }
 
 /// The binary exponent of a radius.
 fn octave(radius: f64) -> u64 {
     radius.abs().to_bits() >> 52
-}
-
-/// The numbers of points along rows of cells with about two points each: neighbours come near each other.
-pub fn spatial_order<'a>(points: impl ExactSizeIterator<Item = &'a Vector> + Clone) -> Vec<u32> {
-    let (low, high) = extent(points.clone().copied());
-    let (width, height) = (high.x - low.x, high.y - low.y);
-    let cells = 0.5 * points.len() as f64;
-    let side = (width * height / cells)
-        .sqrt()
-        .max(width.max(height) / cells);
-    let scale = if side > 0.0 { 1.0 / side } else { 0.0 };
-    let along = |offset: f64, extent: f64| (offset.max(0.0) * scale).min(extent * scale) as usize;
-    let columns = along(width, width) + 1;
-    let rows = along(height, height) + 1;
-    // Infinite coordinates are beyond every cell, NaN is before.
-    let cell = |p: &Vector| along(p.y - low.y, height) * columns + along(p.x - low.x, width);
-    let mut next = vec![0_u32; columns * rows + 1];
-    for point in points.clone() {
-        next[cell(point) + 1] += 1;
-    }
-    for c in 1..next.len() {
-        next[c] += next[c - 1];
-    }
-    let mut order = vec![0; points.len()];
-    for (number, point) in (0..).zip(points) {
-        let place = &mut next[cell(point)];
-        order[*place as usize] = number;
-        *place += 1;
-    }
-    order
-}
-
-/// The lowest and highest coordinates of the finite points.
-pub(super) fn extent(points: impl Iterator<Item = Vector>) -> (Vector, Vector) {
-    let mut low = Vector::new(f64::INFINITY, f64::INFINITY);
-    let mut high = -low;
-    for p in points.filter(|p| p.x.is_finite() && p.y.is_finite()) {
-        low = Vector::new(low.x.min(p.x), low.y.min(p.y));
-        high = Vector::new(high.x.max(p.x), high.y.max(p.y));
-    }
-    if low.x <= high.x {
-        (low, high)
-    } else {
-        (Vector::default(), Vector::default())
-    }
 }
 
 #[cfg(test)]
@@ -357,22 +346,6 @@ mod tests {
         }
         let around = pairs(&discs, 1e-9);
         assert_eq!(around.iter().filter(|p| p.0 == 0).count(), 600);
-    }
-
-    #[test]
-    fn the_spatial_order_goes_along_rows() {
-        let points: Vec<_> = (0..64)
-            .map(|k| Vector::new(f64::from(k / 8), f64::from(k % 8)))
-            .collect();
-        let order = spatial_order(points.iter());
-        let rows: Vec<f64> = order.iter().map(|&k| points[k as usize].y).collect();
-        assert!(rows.windows(2).all(|pair| pair[1] > pair[0] - 1.5));
-        assert_eq!(
-            spatial_order([Vector::new(f64::NAN, 1.0), Vector::new(3.0, f64::INFINITY)].iter())
-                .len(),
-            2
-        );
-        assert!(spatial_order([].iter()).is_empty());
     }
 
     #[test]

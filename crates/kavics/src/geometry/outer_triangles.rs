@@ -5,8 +5,10 @@
 //! of a pocket lies the corner with the lowest radical centre.
 
 use crate::geometry::Vector;
+use crate::geometry::dual_graph::not_turned_around;
 use crate::geometry::lifted::Lifted;
 use crate::geometry::near_pairs::Disc;
+use crate::geometry::power_diagram::DualEdge;
 
 /// Where triangles are missing around a disc `at`: counter-clockwise from neighbour `to` up to neighbour `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -170,7 +172,8 @@ pub(super) struct Lowest<'a> {
     lifted: &'a Lifted<'a>,
     along: Vector,
     squared: f64,
-    foot: f64,
+    /// Share of the edge from its first centre to the radical axis.
+    pub(super) foot: f64,
     height: f64,
     slack: f64,
     corner: Option<(u32, u32)>,
@@ -235,5 +238,16 @@ impl<'a> Lowest<'a> {
         let foot = self.edge[0].centre + self.along * self.foot;
         let centre = foot + self.along.quarter_turn() * self.height;
         self.corner.map(|(name, _)| (name, centre))
+    }
+    /// Length of the edge times that from the radical axis' foot to the radical centre.
+    pub(super) fn doubled(&self) -> f64 {
+        self.height * self.squared
+    }
+
+    /// The dual edge, by the edge's length times its parts on the right and on the left.
+    pub(super) fn dual_edge(&self, doubled: [f64; 2]) -> DualEdge {
+        let inverse = 1.0 / self.squared.sqrt();
+        let parts = not_turned_around(doubled.map(|doubled| doubled * inverse));
+        DualEdge::seen_from(self.edge[0].index, self.edge[1].index, parts)
     }
 }

@@ -40,6 +40,8 @@ pub struct Way {
     pub progress: Progress,
     /// What the work has cost where stiffness depends on the state.
     pub account: Account,
+    /// Energy that softening took, `[force·length]`.
+    pub softened: f64,
 }
 
 /// A bond that breaks.
@@ -80,20 +82,33 @@ pub fn advance(
 ) -> Result<Point, Failure> {
     let action = action(program, factors, system.assembly.body_count());
     let (mut here, _) = equilibrium(system, point, &[], &action, load_factor, way)?;
+    here = hold(system, here, breakage, &action, load_factor, way)?;
+    here.factors = factors.to_vec();
+    Ok(here)
+}
+
+/// From an equilibrium under `action` to one in which no bond is beyond its limits.
+pub fn hold(
+    system: &mut System<'_>,
+    mut here: Point,
+    breakage: Breakage,
+    action: &Action,
+    load_factor: f64,
+    way: &mut Way,
+) -> Result<Point, Failure> {
     loop {
         let broken = over_limit(&here, system.settings.tie_tolerance, breakage);
         if broken.is_empty() {
             break;
         }
-        here = break_bonds(system, &here, &broken, &action, load_factor, way)?;
+        here = break_bonds(system, &here, &broken, action, load_factor, way)?;
     }
-    here.factors = factors.to_vec();
     check(system, &here, way)?;
     Ok(here)
 }
 
 /// The equilibrium under `action`, reached from `before` while some forces vanish, and what each of these sets free.
-pub(super) fn equilibrium(
+pub fn equilibrium(
     system: &mut System<'_>,
     before: &Point,
     vanishing: &[Vanishing],
@@ -103,12 +118,7 @@ pub(super) fn equilibrium(
 ) -> Result<(Point, Vec<f64>), Failure> {
     let mut configuration = before.configuration.clone();
     system.equilibrate(&mut configuration, action, &mut way.progress)?;
-    let imbalance = system.imbalance(&configuration, &action.loads);
-    system.largest_force = system.largest_force.max(imbalance.force);
-    let forces = Forces {
-        loads: action.loads.clone(),
-        reactions: reactions(system, &imbalance.unbalanced),
-    };
+    let forces = forces(system, &configuration, action);
     let stretch = Stretch {
         before: (&before.configuration, &before.forces),
         after: (&configuration, &forces),
@@ -117,6 +127,70 @@ pub(super) fn equilibrium(
     };
     let mut energy = before.energy;
     let released = add_work(system, &mut energy, &stretch, &mut way.account);
+    let reached = Reached {
+        configuration,
+        forces,
+        energy,
+    };
+    let point = remembered(system, before, reached, load_factor, way);
+    Ok((point, released))
+}
+
+/// The point that a configuration in equilibrium is, reached from `before` on a straight way.
+pub fn settled(
+    system: &mut System<'_>,
+    before: &Point,
+    configuration: Configuration,
+    action: &Action,
+    load_factor: f64,
+    way: &mut Way,
+) -> Point {
+    let forces = forces(system, &configuration, action);
+    let mut energy = before.energy;
+    ledger::add_way(
+        &mut energy,
+        (&before.configuration, &before.forces),
+        (&configuration, &forces),
+        system.properties,
+    );
+    let reached = Reached {
+        configuration,
+        forces,
+        energy,
+    };
+    remembered(system, before, reached, load_factor, way)
+}
+
+/// An equilibrium before its bonds remember it.
+struct Reached {
+    configuration: Configuration,
+    forces: Forces,
+    energy: Energy,
+}
+
+fn forces(system: &mut System<'_>, configuration: &Configuration, action: &Action) -> Forces {
+    let imbalance = system.imbalance(configuration, &action.loads);
+    system.largest_force = system.largest_force.max(imbalance.force);
+    Forces {
+        loads: action.loads.clone(),
+        reactions: reactions(system, &imbalance.unbalanced),
+    }
+}
+
+/// The point of an equilibrium, and what happened on the way to it.
+fn remembered(
+    system: &System<'_>,
+    before: &Point,
+    reached: Reached,
+    load_factor: f64,
+    way: &mut Way,
+) -> Point {
+    let Reached {
+        mut configuration,
+        forces,
+        energy,
+    } = reached;
+    way.softened += energy.fracture_energy - before.energy.fracture_energy;
     let set_aside = system.loose_grains();
     let iteration = way.progress.iterations;
     let happened = phase_events(&before.configuration, &configuration)
@@ -131,16 +205,16 @@ pub(super) fn equilibrium(
     for bond in configuration.bonds.values_mut() {
         bond.remember(system.properties);
     }
-    let factors = before.factors.clone();
-    let point = Point {
+    let mut point = Point {
         configuration,
         forces,
         energy,
-        factors,
+        factors: before.factors.clone(),
         set_aside,
         residual: way.progress.residual,
     };
-    Ok((point, released))
+    break_softened(system, &mut point, 0.0, load_factor, way);
+    point
 }
 
 /// Adds the work on a way, by straight lines where all stiffness is constant; answers what vanishing forces set free.
@@ -156,6 +230,7 @@ fn add_work(
         energy.external_work += work.external;
         energy.friction_work += work.friction;
         energy.nonpotential_work += work.nonpotential;
+        energy.fracture_energy += work.fracture;
         energy.elastic_energy = ledger::elastic_energy(after, system.properties);
         work.released
     } else {
@@ -170,6 +245,47 @@ fn add_work(
         energy.release_energy += freed;
     }
     released
+}
+
+/// Breaks the bonds that softening has left at most this share of their force.
+pub fn break_softened(
+    system: &System<'_>,
+    point: &mut Point,
+    share: f64,
+    load_factor: f64,
+    way: &mut Way,
+) {
+    for contact in system.assembly.contacts.ids() {
+        let bond = &mut point.configuration.bonds[contact];
+        let Some((left, mode)) = bond.left().filter(|(left, _)| *left <= share) else {
+            continue;
+        };
+        // What little it still holds goes with it.
+        let held = if left > 0.0 {
+            bond.energy(system.properties)
+        } else {
+            0.0
+        };
+        let fracture_energy = held + bond.memory.damage.dissipated;
+        bond.break_into_successor(
+            &system.assembly.contacts[contact],
+            system.properties,
+            system.assembly.thickness,
+        );
+        point.energy.fracture_energy += held;
+        point.energy.elastic_energy -= held;
+        way.events.push(Event {
+            iteration: way.progress.iterations,
+            load_factor,
+            kind: EventKind::Broke {
+                contact,
+                mode,
+                fracture_energy,
+                release_energy: 0.0,
+            },
+            avalanche: None,
+        });
+    }
 }
 
 /// What bound freedoms need so that nothing stays unbalanced.

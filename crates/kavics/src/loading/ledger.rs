@@ -44,7 +44,7 @@ pub fn elastic_energy(configuration: &Configuration, properties: &PerProperty<Pr
         .sum()
 }
 
-/// What friction and laws without potential took since the last equilibrium.
+/// What friction, laws without potential and softening took since the last equilibrium.
 pub fn dissipation(
     configuration: &Configuration,
     properties: &PerProperty<Property>,
@@ -61,6 +61,7 @@ pub fn dissipation(
             );
             sum.friction += part.friction;
             sum.nonpotential += part.nonpotential;
+            sum.fracture += part.fracture;
         }
     }
     sum
@@ -92,5 +93,6 @@ pub fn add_way(
     );
     energy.friction_work += dissipation.friction;
     energy.nonpotential_work += dissipation.nonpotential;
+    energy.fracture_energy += dissipation.fracture;
     energy.elastic_energy = elastic_energy(after.0, properties);
 }

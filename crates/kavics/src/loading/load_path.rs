@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::advance::{self, Point, Way};
+use super::control::{PathControl, Steered};
 use super::event_driven::EventDriven;
 use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
@@ -22,19 +23,22 @@ pub(super) const COLLAPSE: f64 = 1e-4;
 /// The first item is the undeformed state, step 0. Where a load step cannot be finished, the last equilibrium
 /// found within it comes with `complete = false`, then the error, then nothing.
 pub struct LoadPath<'a> {
-    system: System<'a>,
-    program: &'a Program,
-    breakage: Breakage,
+    pub(super) system: System<'a>,
+    pub(super) program: &'a Program,
+    pub(super) breakage: Breakage,
     event_driven: EventDriven,
-    point: Point,
+    pub(super) point: Point,
     /// Stage and place of the next load step in it.
-    next: (usize, usize),
-    step: usize,
-    waiting: VecDeque<Result<Equilibrium, SolveError>>,
-    failed: bool,
+    pub(super) next: (usize, usize),
+    pub(super) step: usize,
+    pub(super) waiting: VecDeque<Result<Equilibrium, SolveError>>,
+    /// No load step is left: an error, or separated.
+    pub(super) ended: bool,
+    pub(super) steered: Steered,
 }
 
 /// Factors at the two ends of a load step.
+#[derive(Clone)]
 pub(super) struct LoadStep {
     /// Index of the stage.
     pub stage: usize,
@@ -47,7 +51,7 @@ pub(super) struct LoadStep {
 }
 
 impl LoadStep {
-    fn factors(&self, share: f64) -> Vec<f64> {
+    pub(super) fn factors(&self, share: f64) -> Vec<f64> {
         let between = |(from, to): (&f64, &f64)| {
             if share == 1.0 {
                 *to
@@ -58,13 +62,19 @@ impl LoadStep {
         self.from.iter().zip(&self.to).map(between).collect()
     }
 
-    fn load_factor(&self, share: f64) -> f64 {
+    pub(super) fn load_factor(&self, share: f64) -> f64 {
         let [from, to] = self.load_factor;
         if share == 1.0 {
             to
         } else {
             from + share * (to - from)
         }
+    }
+
+    /// Share at which the stage's load factor is zero.
+    pub(super) fn unloaded(&self) -> f64 {
+        let [from, to] = self.load_factor;
+        from / (from - to)
     }
 
     /// Share of this load step to which its end is to be known.
@@ -99,7 +109,8 @@ impl<'a> LoadPath<'a> {
             next: (0, 0),
             step: 0,
             waiting: VecDeque::new(),
-            failed: false,
+            ended: false,
+            steered: Steered::default(),
         };
         let way = Way {
             events: advance::first_events(&path.point),
@@ -108,6 +119,13 @@ impl<'a> LoadPath<'a> {
         let start = path.equilibrium(0, 0.0, true, 0, way);
         path.waiting.push_back(Ok(start));
         path
+    }
+
+    /// The same path, stages steered by `control`.
+    #[must_use]
+    pub fn steered_by(mut self, control: PathControl) -> Self {
+        self.steered = Steered::new(control, &self.point.configuration);
+        self
     }
 
     /// Number of unknown displacements and rotations.
@@ -139,7 +157,7 @@ impl<'a> LoadPath<'a> {
     }
 
     /// Finishes a load step, in parts where it does not go in one.
-    fn take(&mut self, load_step: &LoadStep) {
+    pub(super) fn take(&mut self, load_step: &LoadStep) {
         self.step += 1;
         let before = self.wants_modes().then(|| self.point.configuration.state());
         let mut way = Way::default();
@@ -196,11 +214,16 @@ impl<'a> LoadPath<'a> {
         let tolerance = self.system.settings.tolerance;
         let error = failure.at(self.step, load_factor, self.system.assembly, tolerance);
         self.waiting.push_back(Err(error));
-        self.failed = true;
+        self.ended = true;
     }
 
     /// One part of a load step, where the secant finds no admissible phases by the tangent again.
-    fn attempt(&mut self, load_step: &LoadStep, share: f64, way: &mut Way) -> Result<(), Failure> {
+    pub(super) fn attempt(
+        &mut self,
+        load_step: &LoadStep,
+        share: f64,
+        way: &mut Way,
+    ) -> Result<(), Failure> {
         let failure = match self.attempt_once(load_step, share, way) {
             Err(failure)
                 if self.system.settings.iteration == Iteration::Secant && self.has_phases() =>
@@ -251,7 +274,7 @@ impl<'a> LoadPath<'a> {
         }
     }
 
-    fn equilibrium(
+    pub(super) fn equilibrium(
         &self,
         stage: usize,
         load_factor: f64,
@@ -289,13 +312,10 @@ impl<'a> LoadPath<'a> {
     /// The stability of the present point, reached from `before`.
     fn stability(&self, before: &State) -> Option<Stability> {
         let configuration = &self.point.configuration;
-        let stability = self
-            .system
-            .stability(configuration, self.system.settings.modes);
-        Some(Stability {
-            second_order_work: second_order_work(before, &configuration.state()),
-            ..stability.ok()?
-        })
+        let modes = self.system.settings.modes;
+        let mut stability = self.system.stability(configuration, modes).ok()?;
+        stability.summary.second_order_work = second_order_work(before, &configuration.state());
+        Some(stability)
     }
 }
 
@@ -303,12 +323,14 @@ impl Iterator for LoadPath<'_> {
     type Item = Result<Equilibrium, SolveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.waiting.is_empty() && !self.failed {
+        if self.waiting.is_empty() && !self.ended {
             let load_step = self.next_load_step()?;
             if self.breakage == Breakage::EventDriven {
                 self.take_events(&load_step);
-            } else {
+            } else if self.steered.is_load_controlled() {
                 self.take(&load_step);
+            } else {
+                self.take_steered(load_step);
             }
         }
         self.waiting.pop_front()

@@ -3,6 +3,7 @@
 //! In: an assembly, its contact properties and a [`Program`]. Out: one equilibrium per load step.
 
 mod advance;
+mod control;
 mod event_driven;
 mod ledger;
 mod load_path;
@@ -10,5 +11,6 @@ mod program;
 mod refinement;
 mod work;
 
+pub use control::{Control, PathControl};
 pub use load_path::LoadPath;
 pub use program::{Action, AppliedLoad, Breakage, Held, Prescribed, Program, Stage};

@@ -27,6 +27,8 @@ pub struct Work {
     pub friction: f64,
     /// What laws without potential took.
     pub nonpotential: f64,
+    /// What softening took.
+    pub fracture: f64,
     /// What each force that vanishes on the way sets free.
     pub released: Vec<f64>,
 }
@@ -35,12 +37,17 @@ impl Work {
     /// What does not add up.
     pub fn imbalance(&self) -> f64 {
         let released: f64 = self.released.iter().sum();
-        self.external - self.elastic - self.friction - self.nonpotential - released
+        self.external - self.elastic - self.friction - self.nonpotential - self.fracture - released
     }
 
     /// The largest term, apart from the elastic one, which has no error.
     pub fn largest(&self) -> f64 {
-        let terms = [self.external, self.friction, self.nonpotential];
+        let terms = [
+            self.external,
+            self.friction,
+            self.nonpotential,
+            self.fracture,
+        ];
         let released = self.released.iter().copied();
         terms
             .into_iter()
@@ -57,6 +64,7 @@ impl Work {
             elastic: self.elastic + factor * other.elastic,
             friction: self.friction + factor * other.friction,
             nonpotential: self.nonpotential + factor * other.nonpotential,
+            fracture: self.fracture + factor * other.fracture,
             released: released.map(|(a, b)| a + factor * b).collect(),
         }
     }
@@ -204,6 +212,7 @@ impl Stretch<'_> {
                 let part = law.dissipation_between(instants, &bond.stiffness, &bond.memory);
                 work.friction += part.friction;
                 work.nonpotential += part.nonpotential;
+                work.fracture += part.fracture;
             }
         }
         let left = 2.0 - shares[0] - shares[1];

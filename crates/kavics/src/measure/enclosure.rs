@@ -63,7 +63,7 @@ impl Rows {
                 continue;
             }
             for slot in graph.star(node) {
-                let low = centres[graph.half_edges()[slot as usize].to as usize];
+                let low = centres[graph.half_edge(slot).to as usize];
                 // The way back of this one is met at the other end.
                 if high.y <= low.y {
                     continue;
@@ -168,8 +168,8 @@ mod tests {
         let (centres, graph) = drawing();
         let points: Vec<Vector> = points.iter().map(|&(x, y)| Vector::new(x, y)).collect();
         let ends = |slot: u32| {
-            let half_edge = graph.half_edges()[slot as usize];
-            (graph.half_edges()[half_edge.twin as usize].to, half_edge.to)
+            let half_edge = graph.half_edge(slot);
+            (graph.half_edge(half_edge.twin).to, half_edge.to)
         };
         let found = nearest_to_the_left(&points, &graph, &centres, 5.0);
         found.into_iter().map(|slot| slot.map(ends)).collect()

@@ -51,7 +51,7 @@ impl<'a> Walker<'a> {
             centres,
             radii,
             angles: Angles::new(),
-            walk_of_slot: vec![UNSEEN; graph.half_edges().len()],
+            walk_of_slot: vec![UNSEEN; graph.half_edges()],
             longest_squared: 0.0,
         }
     }
@@ -84,7 +84,7 @@ impl<'a> Walker<'a> {
         let (mut slot, mut from, mut start) = (first_slot, node, Vector::default());
         let mut back = self.back(node, first_slot);
         loop {
-            let HalfEdge { to, twin } = self.graph.half_edges()[slot as usize];
+            let HalfEdge { to, twin } = self.graph.half_edge(slot);
             let end = self.centres[to as usize] - origin;
             let edge = end - start;
             let radius = self.radii[from as usize];
@@ -122,7 +122,7 @@ impl<'a> Walker<'a> {
         } else {
             slot + 1
         };
-        let before = self.graph.half_edges()[after as usize].to;
+        let before = self.graph.half_edge(after).to;
         self.centres[before as usize] - self.centres[node as usize]
     }
 
@@ -140,10 +140,7 @@ impl<'a> Walker<'a> {
                 (leftmost, outer) = (from, false);
             }
             outer |= from == leftmost && slot + 1 == self.graph.star(from).end;
-            (from, slot) = (
-                self.graph.half_edges()[slot as usize].to,
-                self.graph.next(slot),
-            );
+            (from, slot) = (self.graph.half_edge(slot).to, self.graph.next(slot));
             if slot == first_slot {
                 return outer.then_some(leftmost);
             }

@@ -3,7 +3,7 @@
 //! The grains at the rim of the window follow the strain without rotation, those inside find their balance. With
 //! the average stress over the power cells and the strain over the triangles of the window, Hill's condition holds
 //! exactly: the moduli are the energy of the answer, symmetric where the contacts have a potential, never above the
-//! moduli without relaxation, and those of the lattice for a lattice (decision 0012).
+//! moduli without relaxation, and those of the lattice for a lattice (decision 0014).
 
 use std::collections::HashSet;
 

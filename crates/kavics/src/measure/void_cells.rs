@@ -7,11 +7,10 @@
 use std::f64::consts::PI;
 
 use crate::assembly::Partner;
-use crate::geometry::{Embedding, Vector};
+use crate::geometry::{Embedding, Vector, spatial_order};
 use crate::ids::{ContactId, GrainId, PerGrain};
 use crate::measure::enclosure::nearest_to_the_left;
 use crate::measure::face_walk::{Walk, Walker};
-use crate::measure::rows::along_rows;
 use crate::measure::{Snapshot, SymmetricTensor};
 
 /// No cell: what lies around everything.
@@ -61,6 +60,8 @@ pub struct VoidCells {
     /// Area within the outlines of the components that lie in no cell: Σ A_m, `[length²]`.
     pub enclosed_area: f64,
     contact_ids: Vec<ContactId>,
+    /// The nodes of each contact.
+    edges: Vec<[u32; 2]>,
     grain_of_node: Vec<u32>,
     graph: Embedding,
     first_slots: Vec<u32>,
@@ -75,7 +76,7 @@ pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
     let grains = &snapshot.assembly.grains;
     let centres: Vec<Vector> = grains.ids().map(|grain| snapshot.centre(grain)).collect();
     // Nodes that are near in the plane are near in memory, so that walks stay within the cache.
-    let grain_of_node = along_rows(&centres);
+    let grain_of_node = spatial_order(&centres);
     let centre = |&grain: &u32| centres[grain as usize];
     let centres: Vec<Vector> = grain_of_node.iter().map(centre).collect();
     let radius = |&grain: &u32| grains[GrainId(grain)].radius;
@@ -86,6 +87,7 @@ pub fn void_cells(snapshot: &Snapshot<'_>) -> VoidCells {
     let mut found = VoidCells {
         contacts: edges.len(),
         contact_ids,
+        edges,
         grain_of_node,
         ..VoidCells::default()
     };
@@ -166,7 +168,7 @@ impl VoidCells {
             Some(self.graph.next(slot)).filter(|&next| next != first)
         });
         along.map(|slot| {
-            let node = self.graph.half_edges()[slot as usize].to;
+            let node = self.graph.half_edge(slot).to;
             GrainId(self.grain_of_node[node as usize])
         })
     }
@@ -176,12 +178,11 @@ impl VoidCells {
     /// With X^L, X^R any points chosen for these cells, or the middle of the contact where there is none, and h the
     /// vector X^L − X^R turned by −90°, Σ h_i l_j = A δ_ij, where A is the enclosed area. Satake (1992).
     pub fn beside(&self) -> impl Iterator<Item = (ContactId, [Option<usize>; 2])> {
-        let contacts = self.contact_ids.iter().enumerate();
-        contacts.map(|(edge, &id)| {
-            (
-                id,
-                self.graph.slots(edge).map(|slot| self.cell_left_of(slot)),
-            )
+        let contacts = self.contact_ids.iter().zip(&self.edges);
+        contacts.map(|(&id, &edge)| {
+            let slots = self.graph.slots(edge).map(|slots| slots.map(Some));
+            let beside = slots.unwrap_or_default();
+            (id, beside.map(|slot| self.cell_left_of(slot?)))
         })
     }
 

@@ -170,6 +170,7 @@ fn build(
         program,
         settings: plan.run.settings,
         breakage: plan.run.breakage,
+        control: plan.run.control,
         window,
         record_every: plan.run.record_every,
         record_voids: plan.run.record_voids,

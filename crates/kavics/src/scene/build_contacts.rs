@@ -2,13 +2,14 @@
 
 use super::build_grains::PlacedGrains;
 use super::check_contacts::{ContactsPlan, ZonePlace, ZonePlan};
+use super::check_softening;
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::sides::side_called;
-use crate::assembly::{self, Assembly, Contact, ContactGraph, Grain, Partner, Side, Site};
+use crate::assembly::{self, Assembly, Bodies, Contact, ContactGraph, Partner, Side, Site};
 use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
 use crate::geometry::Vector;
-use crate::ids::{PerContact, PerGrain, PerSide, PropertyId};
+use crate::ids::{PerContact, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
 
 /// The assembly: grains, sides, contacts and dual graph.
@@ -28,12 +29,16 @@ pub fn assembly(
     let tolerance = plan.touching_tolerance * placed.mean_radius;
     let graph = assembly::contact_graph(&placed.grains, &sides, plan.between, &reach, tolerance);
     sides_touch(plan, &graph, &placed, &sides, checker);
+    let bodies = Bodies {
+        grains: &placed.grains,
+        sides: &sides,
+    };
     let met = Met {
         graph: &graph,
-        grains: &placed.grains,
+        bodies,
     };
     let properties = zoned(plan, met, seed, checker)?;
-    let contacts = contacts(plan, &graph, &placed, &properties, seed);
+    let contacts = contacts(plan, met, &properties, seed);
     let assembly = Assembly {
         grains: placed.grains,
         sides,
@@ -44,6 +49,7 @@ pub fn assembly(
     };
     if dual_lengths(plan, &assembly, checker) {
         tension_limits(plan, &assembly, checker);
+        check_softening::brittle_bonds(&plan.properties, &assembly, checker);
     }
     Some(assembly)
 }
@@ -123,7 +129,7 @@ fn warn_of_grains_behind(
 #[derive(Clone, Copy)]
 struct Met<'a> {
     graph: &'a ContactGraph,
-    grains: &'a PerGrain<Grain>,
+    bodies: Bodies<'a>,
 }
 
 /// The property of each site.
@@ -180,7 +186,7 @@ fn chosen(zone: &ZonePlan, met: Met<'_>, mut draws: Stream) -> Vec<bool> {
             between_grains(site)
                 && match zone.place {
                     ZonePlace::Everywhere => true,
-                    ZonePlace::Strip(ranges) => ranges.contain(site.tangent_point(met.grains)),
+                    ZonePlace::Strip(ranges) => ranges.contain(site.tangent_point(met.bodies)),
                     ZonePlace::Share(share) => draw < share,
                 }
         })
@@ -217,7 +223,7 @@ fn tangent_points(met: Met<'_>) -> impl Iterator<Item = Vector> {
         .sites
         .iter()
         .filter(between)
-        .map(move |site| site.tangent_point(met.grains))
+        .map(move |site| site.tangent_point(met.bodies))
 }
 
 fn where_contacts_lie(met: Met<'_>) -> String {
@@ -251,7 +257,7 @@ fn without_property(
 ) {
     let count = properties.iter().filter(|p| p.is_none()).count();
     let site = &met.graph.sites[first];
-    let point = site.tangent_point(met.grains);
+    let point = site.tangent_point(met.bodies);
     let span = plan.zones.last().map_or(&plan.span, |zone| &zone.span);
     let verb = if count == 1 {
         "contact has"
@@ -273,7 +279,7 @@ fn without_property(
     );
 }
 
-fn partners(first: Partner, second: Partner) -> String {
+pub fn partners(first: Partner, second: Partner) -> String {
     match (first, second) {
         (Partner::Grain(first), Partner::Grain(second)) => format!("grains {first} and {second}"),
         (Partner::Grain(grain), Partner::Side(side))
@@ -286,13 +292,12 @@ fn partners(first: Partner, second: Partner) -> String {
 
 fn contacts(
     plan: &ContactsPlan,
-    graph: &ContactGraph,
-    placed: &PlacedGrains,
+    met: Met<'_>,
     properties: &[PropertyId],
     seed: u64,
 ) -> PerContact<Contact> {
     let mut draws = stream(seed, Purpose::Strengths);
-    graph
+    met.graph
         .sites
         .iter()
         .zip(properties)
@@ -301,7 +306,7 @@ fn contacts(
             let draw = draws.unit();
             let property = &plan.properties[*id];
             let factor = property.scatter.map_or(1.0, |scatter| scatter.factor(draw));
-            site.contact(property.shaping, &placed.grains, *id, factor)
+            site.contact(property.shaping, met.bodies, *id, factor)
         })
         .collect()
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::check_softening;
 use super::check_strength;
 use super::checker::{Bound, Checker};
 use super::diagnostic::{Problem, either, likely};
@@ -30,6 +31,8 @@ pub struct PropertyPlan {
     pub span: Range<usize>,
     /// Where its limit of tension stands in the file.
     pub tension_span: Option<Range<usize>>,
+    /// Where its fracture energy stands in the file.
+    pub energy_span: Option<Range<usize>>,
 }
 
 /// The property with a name.
@@ -69,6 +72,7 @@ pub fn properties(file: &SceneFile, checker: &mut Checker) -> Option<PerProperty
         .collect();
     let plans: PerProperty<PropertyPlan> = plans.into_iter().collect::<Option<Vec<_>>>()?.into();
     successors_end(file, &plans, checker)?;
+    check_softening::successors(file, &plans, checker)?;
     Some(plans)
 }
 
@@ -127,9 +131,7 @@ fn cemented(
     names: &[&str],
     checker: &mut Checker,
 ) -> Option<PropertyPlan> {
-    if let Some(energy) = &file.fracture_energy {
-        checker.refuse(&energy.span, "`fracture_energy`");
-    }
+    let fracture_energy = check_softening::fracture_energy(file, names, checker);
     let stiffness = stiffness(&file.stiffness, true, checker);
     let hardening = hardening(file.shear_hardening.as_ref(), checker);
     let reading = reading(file.reading.as_ref(), checker);
@@ -156,7 +158,10 @@ fn cemented(
         reading: reading?,
         shear_floor: floor?,
         eccentric: file.eccentric.unwrap_or(false),
-        strength,
+        strength: Strength {
+            fracture_energy: fracture_energy?,
+            ..strength
+        },
         after_breakage: after_breakage?,
     };
     warn_of_lost_shear(&name.value, &law, checker);
@@ -174,6 +179,10 @@ fn cemented(
         scatter,
         span: name.span.clone(),
         tension_span: tension.map(|tension| tension.span.clone()),
+        energy_span: file
+            .fracture_energy
+            .as_ref()
+            .map(|energy| energy.span.clone()),
     })
 }
 
@@ -228,6 +237,7 @@ fn cohesionless(
         scatter: None,
         span: name.span.clone(),
         tension_span: None,
+        energy_span: None,
     })
 }
 

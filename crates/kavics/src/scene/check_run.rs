@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::check_contacts::{Ranges, optional_range};
+use super::check_control;
 use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
@@ -10,7 +11,7 @@ use super::named_file::named_file;
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity, ValueOr};
 use crate::equilibrium::{Iteration, Settings, SolverChoice};
-use crate::loading::Breakage;
+use crate::loading::{Breakage, PathControl};
 
 /// How a scene is solved, measured and recorded.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct RunPlan {
     pub settings: Settings,
     /// When contacts break.
     pub breakage: Breakage,
+    /// What steers the load steps.
+    pub control: PathControl,
     /// What is measured.
     pub window: WindowPlan,
     /// Grains and contacts are recorded every so many load steps.
@@ -52,9 +55,13 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let measure = file.measure.as_ref();
     let measure = measure.map_or(&default.1, |table| &table.value);
     let solving = solving(equilibrium, checker);
+    let control = check_control::control(file, equilibrium, checker);
     let window = window(measure, checker);
     let keep_iterates = measure.every.as_ref().map_or(Some(false), |word| {
         checker.word(word, "every", &[("step", false), ("iteration", true)])
+    });
+    let modes = measure.stability.as_ref().map_or(Some(0), |count| {
+        checker.count_up_to(count, "stability", 1, MOST_MODES)
     });
     let record = file.record.as_ref().map(|record| &record.value);
     let every = record.and_then(|record| record.every.as_ref());
@@ -67,9 +74,12 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     Some(RunPlan {
         settings: Settings {
             keep_iterates: keep_iterates?,
+            modes: modes?,
+            keep_tangents: measure.moduli.unwrap_or(false),
             ..settings
         },
         breakage,
+        control: control?,
         window: window?,
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
@@ -109,19 +119,6 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
             ];
             checker.word(word, "iteration", &choices)
         });
-    let available = |word: &Option<Placed<String>>,
-                     key: &str,
-                     choices: &[(&str, bool)],
-                     checker: &mut Checker| {
-        let Some(word) = word else {
-            return Some(());
-        };
-        if checker.word(word, key, choices)? {
-            return Some(());
-        }
-        checker.refuse(&word.span, &format!("`{key} = \"{}\"`", word.value));
-        None
-    };
     let solver = file.solver.as_ref().map_or(Some(default.solver), |word| {
         let choices = [
             ("auto", SolverChoice::Auto),
@@ -130,19 +127,11 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         ];
         checker.word(word, "solver", &choices)
     });
-    let controls = [
-        ("load", true),
-        ("displacement", false),
-        ("dissipation", false),
-        ("auto", false),
-    ];
-    let control = available(&file.control, "control", &controls, checker);
     let breakage = breakage(file.breakage.as_ref(), checker);
     if let (Some(Breakage::EventDriven), Some(SolverChoice::Iterative)) = (breakage, solver) {
         events_need_a_factor(file.solver.as_ref()?, checker);
         return None;
     }
-    control?;
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,
@@ -161,6 +150,9 @@ fn events_need_a_factor(solver: &Placed<String>, checker: &mut Checker) {
         "expected \"auto\" or \"direct\": events change the factor of the direct solver",
     ));
 }
+
+/// Modes that are sought at once.
+const MOST_MODES: i64 = 100;
 
 /// Least bound on the residual: a few roundings of double precision.
 const LEAST_TOLERANCE: f64 = 1e-14;

@@ -16,9 +16,6 @@ pub fn strength(
     checker: &mut Checker,
 ) -> Option<(Strength, Option<Scatter>)> {
     let file = &table.value;
-    if let Some(energy) = &file.fracture_energy {
-        checker.refuse(&energy.span, "`fracture_energy`");
-    }
     let scatter = match &file.scatter {
         None => Some(None),
         Some(table) => self::scatter(table, checker).map(Some),
@@ -65,6 +62,7 @@ fn limits(kind: StrengthKind, file: &LimitsFile, checker: &mut Checker) -> Optio
         compression: compression?,
         shear: shear?,
         bending: bending?,
+        fracture_energy: None,
     })
 }
 

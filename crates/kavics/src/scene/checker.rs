@@ -67,15 +67,6 @@ impl Checker {
         }
     }
 
-    /// A key that is known, but whose feature is not there.
-    pub fn refuse(&mut self, span: &Range<usize>, what: &str) {
-        self.push(Problem::at(
-            span,
-            format!("{what} is not available in this version"),
-            "not available in this version",
-        ));
-    }
-
     /// The value of a number in SI.
     pub fn number(
         &mut self,

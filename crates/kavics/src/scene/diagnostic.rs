@@ -159,9 +159,6 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A key that is known, but not available.
-const NOT_AVAILABLE: &str = "fracture_energy";
-
 /// What serde calls things, and what a user of scene files does.
 const WORDS: [(&str, &str); 8] = [
     ("invalid type: map", "invalid type: a table"),
@@ -200,11 +197,6 @@ pub fn from_toml(error: &toml::de::Error, text: &str) -> Problem {
     match quoted.split_first() {
         Some((key, names)) if message.starts_with("unknown field") => {
             let problem = Problem::at(&span, format!("unknown key `{key}`"), "not known here");
-            let names: Vec<&str> = names
-                .iter()
-                .copied()
-                .filter(|name| *name != NOT_AVAILABLE)
-                .collect();
             let known = if names.is_empty() {
                 "nothing is expected here".to_owned()
             } else {

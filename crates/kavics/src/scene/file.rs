@@ -230,8 +230,10 @@ pub struct EquilibriumFile {
     pub work_tolerance: Option<Number>,
     /// "auto" (when absent) or "direct".
     pub solver: Option<Placed<String>>,
-    /// "load".
+    /// "load" (when absent), "displacement", "dissipation" or "auto".
     pub control: Option<Placed<String>>,
+    /// Load steps that a stage may take beyond the number of its factors; 2000 when absent.
+    pub most_steps: Option<Placed<i64>>,
 }
 
 /// What is measured.
@@ -243,6 +245,10 @@ pub struct MeasureFile {
     pub window: Option<Placed<ValueOr<WindowFile>>>,
     /// "step" (when absent) or "iteration".
     pub every: Option<Placed<String>>,
+    /// How many of the lowest modes of the tangent are sought at each load step; none when absent.
+    pub stability: Option<Placed<i64>>,
+    /// Whether the tangent moduli of the window are measured; not when absent.
+    pub moduli: Option<bool>,
 }
 
 /// Grains of the window.

@@ -51,9 +51,9 @@ pub struct CementedFile {
     /// Limits of the force components.
     #[serde(default, deserialize_with = "optional_table")]
     pub strength: Option<Placed<StrengthFile>>,
-    /// Energy of a softening bond: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
+    /// Energy to break the bond, per area of the dual edge, so that it softens beyond its limits `[force/length]`;
+    /// when absent it breaks at once.
+    pub fracture_energy: Option<Number>,
     /// "void" (when absent) or the name of another contact.
     pub after_breakage: Option<Placed<String>>,
 }
@@ -134,9 +134,6 @@ pub struct StrengthFile {
     /// A factor on all limits, drawn for each contact.
     #[serde(default, deserialize_with = "optional_table")]
     pub scatter: Option<Placed<ScatterFile>>,
-    /// Energy of a softening bond: not available in this version.
-    #[cfg_attr(feature = "schema", schemars(skip))]
-    pub fracture_energy: Option<Placed<serde::de::IgnoredAny>>,
 }
 
 /// Limits of the force components, each positive.

@@ -10,6 +10,7 @@ mod check_actions;
 mod check_box;
 mod check_choice;
 mod check_contacts;
+mod check_control;
 mod check_dropped;
 mod check_grains;
 mod check_layers;
@@ -18,6 +19,7 @@ mod check_property;
 mod check_rows;
 mod check_run;
 mod check_sizes;
+mod check_softening;
 mod check_stages;
 mod check_strength;
 mod checker;
@@ -43,7 +45,7 @@ use crate::assembly::{Assembly, Grain, Side};
 use crate::contact_law::Property;
 use crate::equilibrium::Settings;
 use crate::ids::{GrainId, PerGrain, PerProperty, PerSide};
-use crate::loading::{Breakage, LoadPath, Program};
+use crate::loading::{Breakage, LoadPath, PathControl, Program};
 use crate::packing::SieveCurve;
 
 /// A scene, every name resolved, every number checked, grains placed.
@@ -67,6 +69,8 @@ pub struct Scene {
     pub settings: Settings,
     /// When contacts break.
     pub breakage: Breakage,
+    /// What steers the load steps.
+    pub control: PathControl,
     /// Grains of the window of `[measure]`.
     pub window: Vec<GrainId>,
     /// Grains and contacts are recorded every so many load steps.
@@ -154,6 +158,7 @@ impl Scene {
             self.breakage,
             self.settings,
         )
+        .steered_by(self.control)
     }
 }
 

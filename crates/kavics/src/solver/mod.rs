@@ -17,6 +17,7 @@ mod node_vectors;
 pub mod ordering;
 mod panels;
 mod pattern;
+mod refine;
 mod scaled_matrix;
 mod stabilised_gradients;
 mod sweeps;

@@ -138,7 +138,12 @@ impl Paths {
         self.add(panels.of_column[column]);
     }
 
-    /// The next panel; its successor joins the paths.
+    /// The panel that is next.
+    pub fn head(&self) -> Option<usize> {
+        self.heads.last().map(|&panel| panel as usize)
+    }
+
+    /// Takes the next panel; its successor joins the paths.
     pub fn next(&mut self, panels: &Panels) -> Option<usize> {
         let panel = self.heads.pop()? as usize;
         if let Some(parent) = panels.list[panel].parent {

@@ -8,7 +8,25 @@ use std::array::from_fn;
 use super::panels::{Panel, Panels};
 
 /// Sums that are carried side by side, for the processor to add several numbers at once.
-const LANES: usize = 4;
+const LANES: usize = 8;
+
+/// Values of a panel that are fetched ahead.
+const AHEAD: usize = 8192;
+/// Values that memory hands over together.
+const LINE: usize = 8;
+
+/// Reads into the panel to come, in order. Short columns side by side are too short for the processor to see where they
+/// go, and it would wait for each of them.
+pub(super) fn fetch(values: &[f64]) {
+    let ahead = &values[..values.len().min(AHEAD)];
+    let mut sums = [0.0; 4];
+    for lines in ahead.as_chunks::<{ 4 * LINE }>().0 {
+        for (line, sum) in sums.iter_mut().enumerate() {
+            *sum += lines[LINE * line];
+        }
+    }
+    std::hint::black_box(sums);
+}
 
 /// Eliminates the columns of a panel from its part of R vectors: x ← L⁻¹x.
 pub(super) fn forward<const R: usize>(panel: &Panel, values: &[f64], local: &mut [f64]) {
@@ -46,66 +64,46 @@ fn forward_columns<const W: usize>(rows: usize, first: usize, values: &[f64], x:
         }
     }
     let columns: [&[f64]; W] = from_fn(|j| &values[(first + j) * rows + below..][..x.len()]);
-    for (i, x) in x.iter_mut().enumerate() {
-        let mut sum = *x;
+    subtract(x, &columns, from_fn(|j| own[j]));
+}
+
+/// x ← x − Σ column · factor.
+fn subtract<const W: usize>(x: &mut [f64], columns: &[&[f64]; W], factors: [f64; W]) {
+    let rows = x.len();
+    let columns = columns.map(|column| &column[..rows]);
+    // By number, as the compiler makes the best of.
+    for i in 0..rows {
+        let mut sum = x[i];
         for j in 0..W {
-            sum -= columns[j][i] * own[j];
+            sum -= columns[j][i] * factors[j];
         }
-        *x = sum;
+        x[i] = sum;
     }
 }
 
 /// The way back through a panel: x ← L⁻ᵀD⁻¹x.
 pub(super) fn backward<const R: usize>(panel: &Panel, values: &[f64], local: &mut [f64]) {
-    let mut end = panel.columns;
-    while end > 0 {
-        let width = width(end);
-        end -= width;
+    for column in (0..panel.columns).rev() {
+        let values = &values[column * panel.rows + column..(column + 1) * panel.rows];
         for x in local.chunks_exact_mut(panel.rows).take(R) {
-            match width {
-                4 => backward_columns::<4>(panel.rows, end, values, x),
-                3 => backward_columns::<3>(panel.rows, end, values, x),
-                2 => backward_columns::<2>(panel.rows, end, values, x),
-                _ => backward_columns::<1>(panel.rows, end, values, x),
-            }
+            let known = product(&values[1..], &x[column + 1..]);
+            x[column] = x[column] / values[0] - known;
         }
     }
 }
 
-fn backward_columns<const W: usize>(rows: usize, first: usize, values: &[f64], x: &mut [f64]) {
-    let below = first + W;
-    let (own, x) = x.split_at_mut(below);
-    let own = &mut own[first..];
-    let columns: [&[f64]; W] = from_fn(|j| &values[(first + j) * rows + below..][..x.len()]);
-    let products = products(&columns, x);
-    for j in (0..W).rev() {
-        let column = &values[(first + j) * rows + first..];
-        let mut sum = own[j] / column[j] - products[j];
-        for i in j + 1..W {
-            sum -= column[i] * own[i];
-        }
-        own[j] = sum;
-    }
-}
-
-/// The product of each column with a vector.
-fn products<const W: usize>(columns: &[&[f64]; W], x: &[f64]) -> [f64; W] {
-    let whole = x.len() - x.len() % LANES;
-    let mut sums = [[0.0; LANES]; W];
-    for start in (0..whole).step_by(LANES) {
-        let x: [f64; LANES] = from_fn(|lane| x[start + lane]);
-        for (sums, column) in sums.iter_mut().zip(columns) {
-            let column = &column[start..start + LANES];
-            for lane in 0..LANES {
-                sums[lane] += column[lane] * x[lane];
-            }
+fn product(column: &[f64], x: &[f64]) -> f64 {
+    let ((column, column_rest), (x, x_rest)) =
+        (column.as_chunks::<LANES>(), x.as_chunks::<LANES>());
+    let mut sums = [0.0; LANES];
+    for (column, x) in column.iter().zip(x) {
+        for lane in 0..LANES {
+            sums[lane] += column[lane] * x[lane];
         }
     }
-    from_fn(|j| {
-        let [a, b, c, d] = sums[j];
-        let rest = columns[j][whole..].iter().zip(&x[whole..]);
-        (a + c) + (b + d) + rest.map(|(l, x)| l * x).sum::<f64>()
-    })
+    let rest = column_rest.iter().zip(x_rest).map(|(l, x)| l * x);
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + e) + (c + g)) + ((b + f) + (d + h)) + rest.sum::<f64>()
 }
 
 /// Solves with L for R vectors of the whole length, one behind the other.
@@ -116,7 +114,10 @@ pub(super) fn forward_all<const R: usize>(
     local: &mut [f64],
 ) {
     let order = x.len() / R;
-    for panel in &panels.list {
+    for (index, panel) in panels.list.iter().enumerate() {
+        if let Some(next) = panels.list.get(index + 1) {
+            fetch(&factor[next.values()]);
+        }
         gather::<R>(panels, panel, order, x, local);
         forward::<R>(panel, &factor[panel.values()], local);
         scatter::<R>(panels, panel, order, local, x);
@@ -131,7 +132,10 @@ pub(super) fn backward_all<const R: usize>(
     local: &mut [f64],
 ) {
     let order = x.len() / R;
-    for panel in panels.list.iter().rev() {
+    for (index, panel) in panels.list.iter().enumerate().rev() {
+        if index > 0 {
+            fetch(&factor[panels.list[index - 1].values()]);
+        }
         gather::<R>(panels, panel, order, x, local);
         backward::<R>(panel, &factor[panel.values()], local);
         for (x, local) in x

@@ -18,7 +18,7 @@ use super::downdate::Change;
 use super::inertia::{FLOPPY, HELD_PIVOT, Inertia};
 use super::panels::{Panels, Paths};
 use super::pattern::Pattern;
-use super::sweeps::{backward_all, forward, forward_all, gather, scatter};
+use super::sweeps::{backward_all, fetch, forward, forward_all, gather, scatter};
 
 /// LDLᵀ of a symmetric matrix, given by its lower triangle.
 ///
@@ -234,6 +234,7 @@ impl SymmetricSolver {
         self.make_room::<R>();
         self.enter(entries);
         while let Some(panel) = self.paths.next(&self.panels) {
+            self.fetch_next();
             let panel = &self.panels.list[panel];
             let order = self.order.len();
             let local = &mut self.local[..R * panel.rows];
@@ -260,6 +261,7 @@ impl SymmetricSolver {
         self.enter(entries);
         let order = self.order.len();
         while let Some(panel) = self.paths.next(&self.panels) {
+            self.fetch_next();
             let panel = &self.panels.list[panel];
             let values = &self.factor[panel.values()];
             let local = &mut self.local[..R * panel.rows];
@@ -270,6 +272,12 @@ impl SymmetricSolver {
                 local[..panel.columns].fill(0.0);
             }
             scatter::<R>(&self.panels, panel, order, local, &mut self.sparse);
+        }
+    }
+
+    fn fetch_next(&self) {
+        if let Some(next) = self.paths.head() {
+            fetch(&self.factor[self.panels.list[next].values()]);
         }
     }
 

@@ -129,3 +129,33 @@ impl Band {
         separator * separator * separator + SIDES * sides.map(|n| n * n.sqrt()).iter().sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square lattice of n rows has n paths along its rows: no fewer nodes separate its ends, and a column does.
+    #[test]
+    fn a_square_lattice_is_cut_by_as_many_nodes_as_it_has_rows() {
+        let rows = 15;
+        let right = (0..rows * rows)
+            .filter(|node| node % rows + 1 < rows)
+            .map(|node| [node, node + 1]);
+        let up = (0..rows * (rows - 1)).map(|node| [node, node + rows]);
+        let nodes = 0..rows * rows;
+        let part = Part {
+            graph: Graph::from_edges(nodes.len(), right.chain(up)),
+            original: nodes.clone().collect(),
+            position: nodes
+                .map(|node| [f64::from(node % rows), f64::from(node / rows)])
+                .collect(),
+        };
+        let sides = best_cut(&part).expect("a cut");
+        let separator = sides.iter().filter(|&&side| side == Side::Middle).count();
+        assert_eq!(separator, rows as usize);
+        let ([first, second], _) = part.divided(&sides);
+        assert_eq!(first.nodes() + second.nodes() + separator, part.nodes());
+        // Up to two fifths of the nodes may be cut; the others are sure to be on their sides.
+        assert!(first.nodes().min(second.nodes()) >= part.nodes() * 3 / 10);
+    }
+}

@@ -18,6 +18,7 @@ pub(super) enum Side {
 }
 
 /// The middle of a graph that is to be cut.
+#[derive(Debug)]
 pub(super) struct Middle {
     /// Neighbours in the middle of each node; numbers rise from the first side to the second.
     pub graph: Graph,
@@ -118,12 +119,11 @@ impl<'a> Flow<'a> {
             if stop.is_behind() && self.middle.beside[stop.node() as usize][1] {
                 return true;
             }
-            match self.further(stop) {
-                Some(next) => self.visit(next),
-                None => {
-                    self.path.pop();
-                    self.tried.pop();
-                }
+            if let Some(next) = self.further(stop) {
+                self.visit(next);
+            } else {
+                self.path.pop();
+                self.tried.pop();
             }
         }
         false
@@ -255,5 +255,68 @@ impl<'a> Flow<'a> {
             }
         }
         leads
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn middles() -> impl Strategy<Value = Middle> {
+        (1_u32..25).prop_flat_map(|nodes| {
+            let edges = prop::collection::vec([0..nodes, 0..nodes], 0..60);
+            let beside = prop::collection::vec(any::<[bool; 2]>(), nodes as usize);
+            (edges, beside).prop_map(move |(edges, beside)| Middle {
+                graph: Graph::from_edges(nodes as usize, edges.into_iter()),
+                beside,
+            })
+        })
+    }
+
+    /// Number of paths from one side to the other that share no node, by following each.
+    fn followed(flow: &Flow) -> usize {
+        let mut taken = vec![false; flow.previous.len()];
+        let starts = (0..taken.len()).filter(|&node| flow.previous[node] == FIRST_SIDE);
+        let mut count = 0;
+        for start in starts {
+            assert!(flow.middle.beside[start][0]);
+            let mut node = start as u32;
+            loop {
+                assert!(!std::mem::replace(&mut taken[node as usize], true));
+                let next = flow.next[node as usize];
+                if next == NONE {
+                    break;
+                }
+                assert!(flow.middle.graph.neighbours(node).contains(&next));
+                node = next;
+            }
+            assert!(flow.middle.beside[node as usize][1]);
+            count += 1;
+        }
+        count
+    }
+
+    proptest! {
+        /// By Menger the separator is then the smallest there is, and the paths are as many as there can be.
+        #[test]
+        fn a_separator_separates_and_has_a_node_for_every_path(middle in middles()) {
+            let flow = Flow::new(&middle, usize::MAX).expect("any number of paths");
+            prop_assert_eq!(flow.paths(), followed(&flow));
+            for sides in [flow.cut_near_first(), flow.cut_near_second()] {
+                let separator = sides.iter().filter(|&&side| side == Side::Middle).count();
+                prop_assert_eq!(separator, flow.paths());
+                for node in 0..sides.len() as u32 {
+                    let side = sides[node as usize];
+                    let [beside_first, beside_second] = middle.beside[node as usize];
+                    prop_assert!(side != Side::First || !beside_second);
+                    prop_assert!(side != Side::Second || !beside_first);
+                    let neighbours = middle.graph.neighbours(node).iter();
+                    let across = |&other: &u32| (side, sides[other as usize]) == (Side::First, Side::Second);
+                    prop_assert!(!neighbours.copied().any(|other| across(&other)));
+                }
+            }
+        }
     }
 }
