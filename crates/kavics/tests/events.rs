@@ -299,10 +299,10 @@ factors = FACTORS
 "#;
 
 const WEIGHED: &str = r#"
-[[load]]
+[[move]]
 name = "pull"
-edge = "top"
-normal = [0.02, 0.01]
+grains = { edge = "top" }
+y = 1.0
 [[stage]]
 apply = ["weight"]
 factors = [1.0]
@@ -395,7 +395,7 @@ fn avalanches_lie_between_two_new_maxima_of_the_factor() {
 #[test]
 fn with_constant_weight_every_equilibrium_is_admissible_and_the_ledger_closes() {
     let text = BLOCK.replace("ACTION", WEIGHED);
-    let (path, error) = run(&with(&text, "event-driven", "{ to = 1.0, steps = 40 }"));
+    let (path, error) = run(&with(&text, "event-driven", "{ to = 0.2, steps = 20 }"));
     let factors: Vec<f64> = breaks(&path).iter().map(|e| e.load_factor).collect();
     assert!(factors.len() > 20, "{factors:?} {error:?}");
     assert_ledger_closes(&path);
@@ -471,7 +471,7 @@ fn small_block(action: &str) -> String {
 
 #[test]
 fn a_state_that_hardly_matters_gives_the_events_of_constant_stiffness() {
-    for (action, factors) in [(MOVED, "[0.1, 0.2]"), (WEIGHED, "[0.5, 1.0]")] {
+    for (action, factors) in [(MOVED, "[0.1, 0.2]"), (WEIGHED, "[0.1, 0.2]")] {
         let text = with(&small_block(action), "event-driven", factors);
         let (linear, error) = run(&text);
         let (rooted, other_error) = run(&hardened(&text, "1e-13", "printed"));
@@ -545,6 +545,7 @@ fn after_a_thousand_events_the_state_is_that_of_a_fresh_factorisation() {
             "{ count = 9, longest = 12 }",
             "{ count = 45, longest = 45 }",
         )
+        .replace("shape = 3.0", "shape = 1.0")
         .replace("ACTION", MOVED);
     let text = with(&text, "event-driven", "[FACTOR]");
     let mut last = None;

@@ -2,7 +2,9 @@
 
 use std::mem::discriminant;
 
-use kavics::assembly::{Assembly, Between, ContactGraph, Shaping, box_sides, contact_graph};
+use kavics::assembly::{
+    Assembly, Between, Bodies, ContactGraph, Shaping, box_sides, contact_graph,
+};
 use kavics::contact_law::{Cemented, Law, Property, Reading, StiffnessRule, Strength};
 use kavics::equilibrium::{
     Breakdown, Equilibrium, Freedom, Iteration, Load, Settings, SolveError, SolverChoice, Warning,
@@ -30,7 +32,11 @@ fn pack(count: usize, width: f64, seed: u64, keep: impl Fn(usize) -> bool) -> As
     } = graph;
     let contacts = sites.iter().enumerate().filter(|(k, _)| keep(*k));
     let contact = |site: &kavics::assembly::Site| {
-        site.contact(Shaping::default(), &grains, PropertyId(0), 1.0)
+        let bodies = Bodies {
+            grains: &grains,
+            sides: &sides,
+        };
+        site.contact(Shaping::default(), bodies, PropertyId(0), 1.0)
     };
     Assembly {
         contacts: contacts.map(|(_, site)| contact(site)).collect(),

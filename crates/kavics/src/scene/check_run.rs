@@ -128,6 +128,10 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         checker.word(word, "solver", &choices)
     });
     let breakage = breakage(file.breakage.as_ref(), checker);
+    if let (Some(Breakage::EventDriven), Some(SolverChoice::Iterative)) = (breakage, solver) {
+        events_need_a_factor(file.solver.as_ref()?, checker);
+        return None;
+    }
     let settings = Settings {
         tolerance: tolerance?,
         iteration: iteration?,
@@ -137,6 +141,14 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         ..default
     };
     Some((settings, breakage?))
+}
+
+fn events_need_a_factor(solver: &Placed<String>, checker: &mut Checker) {
+    checker.push(Problem::at(
+        &solver.span,
+        "`solver = \"iterative\"` with `breakage = \"event-driven\"`",
+        "expected \"auto\" or \"direct\": events change the factor of the direct solver",
+    ));
 }
 
 /// Modes that are sought at once.

@@ -181,13 +181,15 @@ impl Walk<'_, '_> {
     fn next(&self, target: f64) -> Next {
         let direction = self.run.direction;
         let network = &self.course.network;
-        let reach = network.reach(self.system, direction);
-        let Interval { lower, upper } = reach.interval;
         let ties = self.ties();
+        let reach = network.reach(self.system, direction, ties);
+        let Interval { lower, upper } = reach.interval;
         let worst = |x| network.worst(self.system, x, ties);
-        if lower > upper.min(direction * self.x) || upper < self.run.back {
+        let none = lower > upper;
+        if none || lower > direction * self.x || upper < self.run.back {
             let (utilisation, contacts) = worst(self.x);
-            if utilisation > 1.0 + ties {
+            // Unless the last equilibrium is beyond an end by rounding alone.
+            if none || utilisation > 1.0 + ties {
                 return Next::Break(self.x, contacts);
             }
         }
@@ -195,13 +197,14 @@ impl Walk<'_, '_> {
             return Next::Arrive;
         }
         let x = direction * upper;
-        let (_, contacts) = worst(x);
-        if contacts.iter().any(|(contact, _)| *contact == reach.last) {
-            Next::Break(x, contacts)
-        } else {
-            // Limits of zero, at a force of zero.
-            Next::Break(x, network.at_end(self.system, direction, upper))
+        if !network.proportional {
+            let (_, contacts) = worst(x);
+            if contacts.iter().any(|(contact, _)| *contact == reach.last) {
+                return Next::Break(x, contacts);
+            }
         }
+        // In proportion to the factor, ties end together; so do limits of zero, at a force of zero.
+        Next::Break(x, network.growing(self.system, &reach.near, direction))
     }
 
     /// Relative difference of utilisations below which contacts break together.

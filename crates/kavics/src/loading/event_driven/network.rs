@@ -33,13 +33,15 @@ pub struct Residual {
     pub force: f64,
 }
 
-/// The factors at which all contacts hold, and the contact at the upper end.
-#[derive(Clone, Copy, Debug)]
+/// The factors at which all contacts hold, and the contacts at the upper end.
+#[derive(Clone, Debug)]
 pub struct Reach {
     /// The factors.
     pub interval: Interval,
-    /// The first contact that holds no farther.
+    /// The contact that ends it.
     pub last: ContactId,
+    /// It and all whose own intervals end there but for a relative tolerance.
+    pub near: Vec<ContactId>,
 }
 
 impl Network {
@@ -137,22 +139,46 @@ impl Network {
     }
 
     /// The factors at which all contacts hold; `direction` −1 counts them the other way.
-    pub fn reach(&self, system: &System<'_>, direction: f64) -> Reach {
-        let mut reach = Reach {
-            interval: Interval::ALL,
-            last: ContactId(0),
-        };
+    pub fn reach(&self, system: &System<'_>, direction: f64, ties: f64) -> Reach {
+        let mut interval = Interval::ALL;
+        let mut last = ContactId(0);
+        let mut near: Vec<(f64, ContactId)> = Vec::new();
         for contact in 0..self.springs.len() {
             let q = self.forces(system, contact);
             let here = self.springs[contact].interval(q, direction);
-            let all = &mut reach.interval;
-            all.lower = all.lower.max(here.lower);
-            if here.upper < all.upper {
-                all.upper = here.upper;
-                reach.last = ContactId::from_index(contact);
+            interval.lower = interval.lower.max(here.lower);
+            if here.upper <= tied(interval.upper, ties) && here.upper < f64::INFINITY {
+                let id = ContactId::from_index(contact);
+                near.push((here.upper, id));
+                if here.upper < interval.upper {
+                    (interval.upper, last) = (here.upper, id);
+                }
             }
         }
-        reach
+        let bound = tied(interval.upper, ties);
+        let near = near.into_iter().filter(|near| near.0 <= bound);
+        Reach {
+            interval,
+            last,
+            near: near.map(|near| near.1).collect(),
+        }
+    }
+
+    /// The components that reach their limits first as the factor grows in a direction.
+    pub fn growing(
+        &self,
+        system: &System<'_>,
+        contacts: &[ContactId],
+        direction: f64,
+    ) -> Vec<(ContactId, Mode)> {
+        let contacts = contacts.iter();
+        contacts
+            .map(|&contact| {
+                let [_, rate] = self.forces(system, contact.index());
+                let growth = force_at([ContactForce::default(), rate], direction);
+                (contact, self.springs[contact.index()].mode(growth))
+            })
+            .collect()
     }
 
     /// The largest utilisation at x, and the contacts that have it but for a relative tolerance.
@@ -172,24 +198,6 @@ impl Network {
             worst,
             tied.map(|(_, contact, mode)| (contact, mode)).collect(),
         )
-    }
-
-    /// The contacts whose interval ends at `upper` just so, and the component that grows there.
-    pub fn at_end(
-        &self,
-        system: &System<'_>,
-        direction: f64,
-        upper: f64,
-    ) -> Vec<(ContactId, Mode)> {
-        let springs = self.springs.iter().enumerate();
-        springs
-            .filter_map(|(contact, spring)| {
-                let q = self.forces(system, contact);
-                let growth = force_at([ContactForce::default(), q[1]], direction);
-                (spring.interval(q, direction).upper == upper)
-                    .then(|| (ContactId::from_index(contact), spring.mode(growth)))
-            })
-            .collect()
     }
 
     /// What is unbalanced, and how much of it there is at factors up to ±`farthest`.
@@ -237,4 +245,9 @@ impl Residual {
     pub fn is_small(&self, share: f64, noise: f64) -> bool {
         self.largest <= share * self.force || self.largest <= noise
     }
+}
+
+/// The factor at which a contact has reached its limit but for a share, if forces grow in proportion to it.
+fn tied(upper: f64, share: f64) -> f64 {
+    upper + share / (1.0 - share) * upper.abs()
 }
