@@ -69,9 +69,8 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
 fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
-        Warning::SolvedDirectly { .. } => 1,
         Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
-        Warning::Separated => 1,
+        Warning::SolvedDirectly { .. } | Warning::Separated => 1,
         Warning::WorkError { .. } => 0,
     }
 }

@@ -186,15 +186,15 @@ fn rank(k: &Matrix) -> usize {
     const NONE: f64 = 1e-12;
     let mut rows = *k;
     let scales = k.map(|row| row.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
-    let mut used = [false; 3];
-    for column in 0..3 {
-        let pivot = (0..3).find(|&i| !used[i] && rows[i][column].abs() > NONE * scales[i]);
+    let mut used = k.map(|_| false);
+    for column in 0..k.len() {
+        let pivot = (0..k.len()).find(|&i| !used[i] && rows[i][column].abs() > NONE * scales[i]);
         let Some(pivot) = pivot else {
             continue;
         };
         used[pivot] = true;
         let pivot_row = rows[pivot];
-        for row in (0..3).filter(|&row| !used[row]) {
+        for row in (0..k.len()).filter(|&row| !used[row]) {
             let share = rows[row][column] / pivot_row[column];
             for (value, of_pivot) in rows[row].iter_mut().zip(pivot_row) {
                 *value -= share * of_pivot;

@@ -218,9 +218,9 @@ mod tests {
         let mut refinement = whole();
         assert_eq!(refinement.worst(), Some(0));
         divide(&mut refinement, 0);
-        // Both f and g are steepest at the end.
-        assert_eq!(refinement.worst(), Some(2));
-        let mut part = 2;
+        // The trapezoid is off by 0.0151 in the first half and by 0.0072 in the second.
+        assert_eq!(refinement.worst(), Some(1));
+        let mut part = 1;
         for _ in 1..MOST_HALVINGS {
             divide(&mut refinement, part);
             part = refinement.parts.len() - 1;

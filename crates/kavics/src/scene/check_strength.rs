@@ -138,7 +138,8 @@ fn lognormal(file: &LognormalFile, checker: &mut Checker) -> Option<Scatter> {
 }
 
 fn uniform(file: &UniformFile, checker: &mut Checker) -> Option<Scatter> {
-    let from = positive(1.0, Some(&file.from), "from", checker);
+    let (number, bound) = (Dimension::Number, Bound::NonNegative);
+    let from = checker.number(&file.from, "from", number, bound);
     let to = positive(1.0, Some(&file.to), "to", checker);
     let (from, to) = (from?, to?);
     if from > to {
