@@ -121,6 +121,10 @@ impl Clipping<'_> {
     /// Adds the triangles with their radical centre beyond the container that no cell within it knows.
     pub(super) fn add_outer_triangles(&self, cut: &mut CutOut, graph: &Embedding) {
         let gaps = std::mem::take(&mut cut.gaps);
+        // Cells of discs in a row never meet three by three, and reach as far as one looks.
+        if self.is_row(&cut.at_boundary) {
+            return;
+        }
         let middle = self.container.middle();
         let within = OUTSIDE * self.size;
         if let Some(found) = outer_triangles(gaps, &self.grid.discs, self.lifted) {
@@ -132,6 +136,16 @@ impl Clipping<'_> {
         } else {
             cut.diagram.outer_triangles = self.far_triangles(&cut.at_boundary, graph);
         }
+    }
+
+    fn is_row(&self, discs: &[u32]) -> bool {
+        let mut centres = discs
+            .iter()
+            .map(|&disc| self.grid.discs[disc as usize].centre);
+        let (Some(first), Some(second)) = (centres.next(), centres.next()) else {
+            return true;
+        };
+        centres.all(|centre| (second - first).cross(centre - first) == 0.0)
     }
 
     /// The same, where the gaps do not fit together: from cells that reach far out. Cells that meet there reach
