@@ -111,6 +111,42 @@ fn tension_ends_with_two_pieces() {
     assert!(events.texts("kind").expect("kinds").contains(&"broke"));
 }
 
+/// A smaller block than the scene has.
+#[test]
+fn a_disordered_block_comes_apart_bond_by_bond() {
+    let scene = workspace().join("scenes/disordered-block.toml");
+    let smaller = [
+        "--set",
+        "box.width=60.0",
+        "--set",
+        "grains.dropped.count=3000",
+        "--set",
+        "record.every=1",
+    ];
+    let run = Run::of("run", &scene, &smaller);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let force = side_force(&run, TOP, |f| f.1);
+    assert!(force.last().unwrap().abs() < 1e-9 * largest(&force));
+    let events = run.table("events", 0).expect("events");
+    let factors = events.numbers("load_factor").expect("factors");
+    assert!(factors.windows(2).any(|pair| pair[1] < 0.8 * pair[0]));
+    // The longest crack crosses the block.
+    let cracks = run.table("cracks", run.last_step()).expect("cracks");
+    assert!(cracks.numbers("extent").expect("extents")[0] > 0.5 * 60.0);
+}
+
+/// Hemmer & Hansen (1992): the bundle bears 1/4 a fibre, but for 1/√N.
+#[test]
+fn a_fibre_bundle_breaks_fibre_by_fibre() {
+    let run = Run::scene("fibre-bundle.toml");
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    let events = run.table("events", 0).expect("events");
+    let factors = events.numbers("load_factor").expect("factors");
+    // With the last fibre the load would have nothing to bear it.
+    assert_eq!(factors.len(), 999);
+    assert!((largest(&factors) - 0.25).abs() < 1.0 / 1000f64.sqrt());
+}
+
 #[test]
 fn shear_breaks_contacts_under_a_constant_weight() {
     let run = done("shear.toml");
