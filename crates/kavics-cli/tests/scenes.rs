@@ -111,7 +111,7 @@ fn tension_ends_with_two_pieces() {
     assert!(events.texts("kind").expect("kinds").contains(&"broke"));
 }
 
-/// A smaller block than the scene has.
+/// A smaller block than the scene has. Its upper piece goes on as a rigid body, with the rounding of its motion alone.
 #[test]
 fn a_disordered_block_comes_apart_bond_by_bond() {
     let scene = workspace().join("scenes/disordered-block.toml");
@@ -120,6 +120,8 @@ fn a_disordered_block_comes_apart_bond_by_bond() {
         "box.width=60.0",
         "--set",
         "grains.dropped.count=3000",
+        "--set",
+        "seed=2",
         "--set",
         "record.every=1",
     ];

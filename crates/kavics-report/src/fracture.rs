@@ -69,34 +69,31 @@ impl Breaks {
 
     /// How many broke, at which factors, in how many avalanches.
     fn note(&self) -> String {
-        let count = self.contact.len();
-        let bonds = if count == 1 { "bond" } else { "bonds" };
-        let highest = self
-            .load_factor
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max);
-        let mut note = format!(
-            "{count} {bonds} broke, the first at load factor {}, none above {}.",
+        let factors = self.load_factor.iter().copied();
+        let highest = factors.fold(f64::NEG_INFINITY, f64::max);
+        format!(
+            "{} broke, the first at load factor {}, none above {}.{}",
+            counted(self.contact.len(), "bond"),
             show(self.load_factor[0]),
-            show(highest)
-        );
+            show(highest),
+            self.avalanches()
+        )
+    }
+
+    /// Number and largest size of the avalanches, where there are some.
+    fn avalanches(&self) -> String {
         let mut sizes: HashMap<i64, usize> = HashMap::new();
         for avalanche in self.avalanche.iter().flatten() {
             *sizes.entry(*avalanche).or_default() += 1;
         }
-        if let Some(largest) = sizes.values().max() {
-            let avalanches = if sizes.len() == 1 {
-                "avalanche"
-            } else {
-                "avalanches"
-            };
-            note += &format!(
-                " {} {avalanches} between new maxima of the factor, the largest of {largest}.",
-                sizes.len()
-            );
-        }
-        note
+        let Some(largest) = sizes.values().max() else {
+            return String::new();
+        };
+        format!(
+            " {} between new maxima of the factor, the largest of {largest}. \
+             Load–displacement curves have a point a load step, and not the path between.",
+            counted(sizes.len(), "avalanche")
+        )
     }
 
     fn figures(&self) -> Vec<Figure> {
@@ -166,6 +163,11 @@ fn longest(cracks: &Columns) -> Result<Table, ReportError> {
     })
 }
 
+fn counted(count: usize, name: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {name}{ending}")
+}
+
 fn summed(values: &[f64]) -> Vec<f64> {
     let sums = values.iter().scan(0.0, |sum, value| {
         *sum += value;
@@ -225,7 +227,7 @@ mod tests {
         assert_eq!(
             breaks.note(),
             "3 bonds broke, the first at load factor 1, none above 2. 2 avalanches between new maxima of the factor, \
-             the largest of 2."
+             the largest of 2. Load–displacement curves have a point a load step, and not the path between."
         );
     }
 }
