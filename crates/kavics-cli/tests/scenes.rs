@@ -111,6 +111,25 @@ fn tension_ends_with_two_pieces() {
     assert!(events.texts("kind").expect("kinds").contains(&"broke"));
 }
 
+#[test]
+fn shear_breaks_contacts_under_a_constant_weight() {
+    let run = done("shear.toml");
+    assert!(*run.steps("broken").last().unwrap() > 5.0);
+    let vertical = side_force(&run, TOP, |f| f.1);
+    assert!(vertical.iter().all(|force| (force + 10.0).abs() < 1e-6));
+    let drag = side_force(&run, TOP, |f| f.0);
+    assert!(largest(&drag) > 1.0);
+}
+
+#[test]
+fn biaxial_compression_passes_its_peak_under_constant_cell_pressure() {
+    let run = done("biaxial.toml");
+    let cell = side_force(&run, LEFT, |f| f.0);
+    assert!(cell.iter().all(|force| (force - 30.0).abs() < 1e-6));
+    let lid = side_force(&run, TOP, |f| f.1);
+    assert!(lid.last().unwrap().abs() < 0.75 * largest(&lid));
+}
+
 /// A smaller block than the scene has. Its upper piece goes on as a rigid body, with the rounding of its motion alone.
 #[test]
 fn a_disordered_block_comes_apart_bond_by_bond() {
@@ -147,25 +166,6 @@ fn a_fibre_bundle_breaks_fibre_by_fibre() {
     // With the last fibre the load would have nothing to bear it.
     assert_eq!(factors.len(), 999);
     assert!((largest(&factors) - 0.25).abs() < 1.0 / 1000f64.sqrt());
-}
-
-#[test]
-fn shear_breaks_contacts_under_a_constant_weight() {
-    let run = done("shear.toml");
-    assert!(*run.steps("broken").last().unwrap() > 5.0);
-    let vertical = side_force(&run, TOP, |f| f.1);
-    assert!(vertical.iter().all(|force| (force + 10.0).abs() < 1e-6));
-    let drag = side_force(&run, TOP, |f| f.0);
-    assert!(largest(&drag) > 1.0);
-}
-
-#[test]
-fn biaxial_compression_passes_its_peak_under_constant_cell_pressure() {
-    let run = done("biaxial.toml");
-    let cell = side_force(&run, LEFT, |f| f.0);
-    assert!(cell.iter().all(|force| (force - 30.0).abs() < 1e-6));
-    let lid = side_force(&run, TOP, |f| f.1);
-    assert!(lid.last().unwrap().abs() < 0.75 * largest(&lid));
 }
 
 /// The stress at rest: sides that do not yield carry less than the lid.
