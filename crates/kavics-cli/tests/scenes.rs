@@ -144,6 +144,44 @@ fn biaxial_compression_passes_its_peak_under_constant_cell_pressure() {
     assert!(lid.last().unwrap().abs() < 0.75 * largest(&lid));
 }
 
+/// A smaller block than the scene has. Its upper piece goes on as a rigid body, with the rounding of its motion alone.
+#[test]
+fn a_disordered_block_comes_apart_bond_by_bond() {
+    let scene = workspace().join("scenes/disordered-block.toml");
+    let smaller = [
+        "--set",
+        "box.width=60.0",
+        "--set",
+        "grains.dropped.count=3000",
+        "--set",
+        "seed=2",
+        "--set",
+        "record.every=1",
+    ];
+    let run = Run::of("run", &scene, &smaller);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let force = side_force(&run, TOP, |f| f.1);
+    assert!(force.last().unwrap().abs() < 1e-9 * largest(&force));
+    let events = run.table("events", 0).expect("events");
+    let factors = events.numbers("load_factor").expect("factors");
+    assert!(factors.windows(2).any(|pair| pair[1] < 0.8 * pair[0]));
+    // The longest crack crosses the block.
+    let cracks = run.table("cracks", run.last_step()).expect("cracks");
+    assert!(cracks.numbers("extent").expect("extents")[0] > 0.5 * 60.0);
+}
+
+/// Hemmer & Hansen (1992): the bundle bears 1/4 a fibre, but for 1/√N.
+#[test]
+fn a_fibre_bundle_breaks_fibre_by_fibre() {
+    let run = Run::scene("fibre-bundle.toml");
+    assert_eq!(run.status, 3, "{}", run.stderr);
+    let events = run.table("events", 0).expect("events");
+    let factors = events.numbers("load_factor").expect("factors");
+    // With the last fibre the load would have nothing to bear it.
+    assert_eq!(factors.len(), 999);
+    assert!((largest(&factors) - 0.25).abs() < 1.0 / 1000f64.sqrt());
+}
+
 /// The stress at rest: sides that do not yield carry less than the lid.
 #[test]
 fn oedometer_presses_on_its_sides() {

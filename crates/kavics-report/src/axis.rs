@@ -8,6 +8,9 @@ const WIDE: f64 = 4.0;
 /// From this ratio on, only powers of ten are ticks.
 const DECADES: f64 = 200.0;
 
+/// Below this share of the largest value a value is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// An axis, linear or logarithmic.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
@@ -29,9 +32,10 @@ impl Axis {
     pub(crate) fn over(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
         let [mut low, mut high] = extent(values);
         // What is near zero by comparison starts at zero, so that sizes can be compared.
-        if low > 0.0 && low < 0.5 * high {
+        // So does what is rounding on the other side of it.
+        if low > 0.0 && low < 0.5 * high || low < 0.0 && -low < ROUNDING * high {
             low = 0.0;
-        } else if high < 0.0 && high > 0.5 * low {
+        } else if high < 0.0 && high > 0.5 * low || high > 0.0 && high < -ROUNDING * low {
             high = 0.0;
         }
         Self::linear(low, high, count)
@@ -39,7 +43,7 @@ impl Axis {
 
     fn linear(mut low: f64, mut high: f64, count: f64) -> Self {
         // Rounding is no curve.
-        let least = 1e-9 * low.abs().max(high.abs());
+        let least = ROUNDING * low.abs().max(high.abs());
         if high - low <= least {
             let half = if high == 0.0 { 0.5 } else { 0.1 * high.abs() };
             (low, high) = (low - half, high + half);
@@ -153,6 +157,14 @@ mod tests {
         assert_eq!(axis.ticks().len(), 5);
         assert!((axis.high - 0.4).abs() < 1e-12);
         assert!((round_step(0.074) - 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn rounding_below_zero_makes_no_room() {
+        let axis = Axis::over([-1e-12, 30.0].into_iter(), 5.0);
+        assert_eq!((axis.low, axis.high), (0.0, 30.0));
+        let axis = Axis::over([-30.0, 1e-12].into_iter(), 5.0);
+        assert_eq!((axis.low, axis.high), (-30.0, 0.0));
     }
 
     #[test]

@@ -9,6 +9,8 @@ mod comparison;
 mod curves;
 mod energy;
 mod error;
+mod fracture;
+mod fracture_picture;
 mod graph;
 mod modes;
 mod moduli;

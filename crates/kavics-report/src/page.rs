@@ -8,6 +8,7 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use crate::curves::{Group, groups};
+use crate::fracture::{Fracture, fracture};
 use crate::graph;
 use crate::modes::{Modes, modes};
 use crate::moduli;
@@ -37,6 +38,7 @@ struct Page {
     pictures: Vec<Picture>,
     large: bool,
     largest: String,
+    fracture: Fracture,
     groups: Vec<Group>,
     moduli: Table,
     modes: Modes,
@@ -107,6 +109,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         pictures,
         large: record.grains > LARGE,
         largest: show(largest),
+        fracture: fracture(folder, &events)?,
         groups: groups(folder, &steps)?,
         moduli: moduli::table(&steps)?,
         modes: modes(folder)?,

@@ -15,6 +15,9 @@ pub(crate) const BOTTOM: f64 = 44.0;
 /// Above this many points a series is a line alone.
 const MARKED: usize = 25;
 
+/// Above so many a line may be jagged, and is thin.
+const JAGGED: usize = 200;
+
 /// One line of a plot.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
@@ -73,6 +76,11 @@ pub(crate) fn draw(plot: &Plot<'_>) -> String {
     for (order, series) in plot.series.iter().enumerate() {
         // Lines on top are thinner, so that those under them still show.
         let width = (3.0 - 0.45 * order as f64).max(1.2);
+        let width = if series.points.len() > JAGGED {
+            1.2
+        } else {
+            width
+        };
         draw_series(&mut svg, &frame, series, width);
     }
     svg.push_str("</svg>");

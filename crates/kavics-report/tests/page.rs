@@ -147,6 +147,45 @@ fn modes_are_drawn_and_moduli_stand_beside_their_bound() {
 }
 
 #[test]
+fn broken_bonds_stand_in_the_order_of_their_breaks() {
+    let place = place();
+    let mut scene = block::scene(7, 5);
+    scene.record_cracks = true;
+    let page = page_of(place.path(), &scene);
+    for part in [
+        "<h2>Fracture</h2>",
+        "<p>3 bonds broke, the first at load factor 1.8, none above 1.8.</p>",
+        "<figcaption>Load factor from break to break",
+        "<figcaption>Energy taken and set free so far",
+        ">break 1</text>",
+        "<small>chains of broken contacts</small>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // Shades of the first, second and third of three breaks, beside those of the scale.
+    for shade in [0, 2, 5] {
+        let class = format!("class=\"break e{shade}\"");
+        assert_eq!(page.matches(&class).count(), 2, "{shade}");
+    }
+}
+
+#[test]
+fn where_nothing_breaks_there_is_no_fracture() {
+    let place = place();
+    let folder = place.path().join("block.results");
+    let scene = block::scene(7, 5);
+    let results =
+        kavics_results::Results::create(&folder, &scene, kavics_results::Options::default());
+    results
+        .expect("an empty place")
+        .finish(kavics_results::RunState::Done, None)
+        .expect("room on the disk");
+    let path = kavics_report::write(&folder, None).expect("a report");
+    let page = fs::read_to_string(path).expect("a page");
+    assert!(!page.contains("<h2>Fracture</h2>"));
+}
+
+#[test]
 fn a_title_is_text_and_no_markup() {
     let place = place();
     let mut scene = block::scene(7, 5);

@@ -272,12 +272,12 @@ impl ResultsFolder {
         self.recorded("sides", step)
     }
 
-    /// The table `cracks` at a recorded load step, of a scene that asks for it.
+    /// The table `cracks` at a recorded load step, of a scene that asks for it; none where there is no such table.
     ///
     /// # Errors
-    /// A table that cannot be read.
-    pub fn cracks(&self, step: usize) -> Result<Columns, ResultsError> {
-        self.recorded(CRACKS, step)
+    /// A table that is there and cannot be read.
+    pub fn cracks(&self, step: usize) -> Result<Option<Columns>, ResultsError> {
+        self.recorded_or_none(CRACKS, step)
     }
 
     /// The table `voids` at a recorded load step, of a scene that asks for it.
@@ -293,11 +293,7 @@ impl ResultsFolder {
     /// # Errors
     /// A table that is there and cannot be read.
     pub fn modes(&self, step: usize) -> Result<Option<Columns>, ResultsError> {
-        if recorded_path(&self.path, MODES, step).is_file() {
-            self.recorded(MODES, step).map(Some)
-        } else {
-            Ok(None)
-        }
+        self.recorded_or_none(MODES, step)
     }
 
     /// The recorded load steps in order, 0 first.
@@ -347,6 +343,11 @@ impl ResultsFolder {
 
     fn recorded(&self, table: &str, step: usize) -> Result<Columns, ResultsError> {
         Columns::read(&recorded_path(&self.path, table, step))
+    }
+
+    fn recorded_or_none(&self, table: &str, step: usize) -> Result<Option<Columns>, ResultsError> {
+        let there = recorded_path(&self.path, table, step).is_file();
+        there.then(|| self.recorded(table, step)).transpose()
     }
 
     fn text(&self, name: &str) -> Result<String, ResultsError> {

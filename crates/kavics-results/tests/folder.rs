@@ -228,9 +228,9 @@ fn cracks_are_recorded_when_asked_for() {
     scene.record_cracks = true;
     block::write(&folder, &scene);
     let folder = ResultsFolder::open(&folder).unwrap();
-    assert_eq!(folder.cracks(0).unwrap().len(), 0);
+    assert_eq!(folder.cracks(0).unwrap().unwrap().len(), 0);
     // Every broken contact lies in one crack.
-    let cracks = folder.cracks(5).unwrap();
+    let cracks = folder.cracks(5).unwrap().unwrap();
     let contacts: i64 = cracks
         .integers("contacts")
         .unwrap()

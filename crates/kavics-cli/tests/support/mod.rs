@@ -67,7 +67,7 @@ impl Run {
             "contacts" => results.contacts(step),
             "sides" => results.sides(step),
             "voids" => results.voids(step),
-            "cracks" => results.cracks(step),
+            "cracks" => Ok(results.cracks(step)?.expect("the scene asks for cracks")),
             other => Columns::read(&results.path().join(format!("{other}.parquet"))),
         }
     }

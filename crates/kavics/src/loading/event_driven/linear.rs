@@ -16,7 +16,7 @@ use super::{EventDriven, Reached, Run};
 use crate::contact_law::Mode;
 use crate::equilibrium::Load;
 use crate::equilibrium::configuration::Failure;
-use crate::equilibrium::system::System;
+use crate::equilibrium::system::{Imbalance, System};
 use crate::ids::{BodyId, ContactId, PerBody};
 use crate::loading::Program;
 use crate::loading::advance::{self, Point, Way};
@@ -322,7 +322,7 @@ impl Walk<'_, '_> {
                 .network
                 .write(self.system, configuration, self.x);
             let imbalance = self.system.imbalance(configuration, &action.loads);
-            self.point.residual = imbalance.residual(self.system.noise());
+            self.point.residual = self.residual(&imbalance);
             self.way.progress.residual = self.point.residual;
             if self.point.residual <= self.system.settings.tolerance || tries == 2 {
                 if has_factor && self.point.residual > self.system.settings.tolerance {
@@ -349,6 +349,17 @@ impl Walk<'_, '_> {
             bond.remember(properties);
         }
         outcome
+    }
+
+    /// Where nothing bears a load any more, what is unbalanced is the rounding of a rigid motion.
+    fn residual(&self, imbalance: &Imbalance) -> f64 {
+        let noise = self.system.noise();
+        let residual = imbalance.residual(noise);
+        if residual > self.system.settings.tolerance && imbalance.largest <= noise {
+            0.0
+        } else {
+            residual
+        }
     }
 
     fn not_converged(&self, at: BodyId) -> Failure {
