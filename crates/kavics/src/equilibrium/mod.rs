@@ -13,6 +13,7 @@ mod iterative;
 mod kinematics;
 mod linear;
 mod search;
+pub(crate) mod side_sums;
 mod sparsity;
 mod stability;
 pub(crate) mod steered;

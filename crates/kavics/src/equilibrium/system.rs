@@ -6,6 +6,7 @@ use super::bond::Bond;
 use super::configuration::Configuration;
 use super::iterative::Iterating;
 use super::kinematics::{ALL_FREEDOMS, ContactFrame};
+use super::side_sums::SideSums;
 use super::sparsity::{Numbers, Sparsity};
 use super::{Breakdown, Freedom, Iteration, Load, Settings};
 use crate::assembly::Assembly;
@@ -215,11 +216,15 @@ impl<'a> System<'a> {
     ) -> Imbalance {
         let mut unbalanced = loads.clone();
         let mut force: f64 = 0.0;
+        let mut sides = SideSums::new(self.assembly);
         for (frame, q) in self.frames.iter().zip(forces) {
             let [first, second] = frame.loads(q);
             unbalanced[frame.first] += first;
-            unbalanced[frame.second] += second;
+            sides.add(frame.second, &mut unbalanced[frame.second], second);
             force = force.max(q.normal.hypot(q.shear));
+        }
+        for (side, load) in sides.cut_off() {
+            unbalanced[side] += load;
         }
         let (mut largest, mut at) = (0.0, BodyId(0));
         for body in unbalanced.ids() {

@@ -5,6 +5,7 @@ use super::spring::{Interval, Spring, force_at, relative_at};
 use crate::contact_law::{ContactForce, Mode, RelativeDisplacement};
 use crate::equilibrium::bond::Bond;
 use crate::equilibrium::configuration::Configuration;
+use crate::equilibrium::side_sums::SideSums;
 use crate::equilibrium::system::System;
 use crate::equilibrium::{Displacement, Load};
 use crate::ids::{BodyId, ContactId, Id};
@@ -204,6 +205,7 @@ impl Network {
     pub fn residual(&self, system: &System<'_>, farthest: f64) -> Residual {
         let mut unbalanced = self.acting.loads.clone();
         let mut force: f64 = 0.0;
+        let mut sides = [(); 2].map(|()| SideSums::new(system.assembly));
         for (contact, frame) in system.frames.iter().enumerate() {
             let q = self.forces(system, contact);
             let sizes = q.map(|q| q.normal.hypot(q.shear));
@@ -211,7 +213,13 @@ impl Network {
             for (part, q) in q.into_iter().enumerate() {
                 let [first, second] = frame.loads(q);
                 unbalanced[frame.first.index()][part] += first;
-                unbalanced[frame.second.index()][part] += second;
+                let sum = &mut unbalanced[frame.second.index()][part];
+                sides[part].add(frame.second, sum, second);
+            }
+        }
+        for (part, sides) in sides.iter().enumerate() {
+            for (side, load) in sides.cut_off() {
+                unbalanced[side.index()][part] += load;
             }
         }
         let mut largest: f64 = 0.0;
