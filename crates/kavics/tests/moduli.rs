@@ -22,7 +22,7 @@ fn block(grains: &str, size: &str, more: &str, window: &str) -> Scene {
         "seed = 1\n[box]\n{size}\n{grains}\n\
          [contact.mortar.cemented]\n\
          stiffness.direct = {{ normal = {NORMAL}, shear = {SHEAR}, moment = 0.2 }}\n{more}\n\
-         [[support]]\ngrains = {{ edge = \"bottom\" }}\nfix = [\"x\", \"y\"]\n\
+         [[support]]\ngrains = {{ edge = \"bottom\" }}\nfix = [\"x\", \"y\", \"rotation\"]\n\
          [[load]]\nname = \"press\"\nedge = \"top\"\nnormal = [-0.1, -0.1]\nshear = [0.3, 0.3]\n\
          [[stage]]\nfactors = [1.0]\n\
          [measure]\nmoduli = true\nwindow = {window}\n"
