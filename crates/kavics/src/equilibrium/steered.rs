@@ -154,7 +154,7 @@ impl System<'_> {
                 return Ok(share);
             }
             let failure = not_converged(progress, &imbalance);
-            if left == 0 || !imbalance.largest.is_finite() {
+            if left == 0 || !imbalance.largest.is_finite() || self.ends_here() {
                 return Err(failure);
             }
             let unbalanced = &imbalance.unbalanced;

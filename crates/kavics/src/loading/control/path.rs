@@ -83,7 +83,7 @@ impl LoadPath<'_> {
             }
         };
         let equilibrium = self.equilibrium(load_step.stage, load_factor, true, cuts, way);
-        self.waiting.push_back(Ok(equilibrium));
+        self.come_to(equilibrium);
     }
 
     fn end(&mut self, load_step: &LoadStep, failure: Failure) {
