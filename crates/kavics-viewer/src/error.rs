@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use arrow_schema::ArrowError;
+use kavics_pictures::PictureError;
 use kavics_results::ResultsError;
 use thiserror::Error;
 
@@ -58,6 +59,9 @@ pub enum PageError {
     /// A file of the results cannot be read.
     #[error("{0}")]
     Results(#[from] ResultsError),
+    /// The assembly cannot be drawn from the results.
+    #[error("{0}")]
+    Picture(#[from] PictureError),
     /// A table does not become an Arrow stream.
     #[error("page data: {0}")]
     Arrow(#[from] ArrowError),
@@ -70,7 +74,7 @@ impl PageError {
             Self::Results(ResultsError::Unreadable { source, .. }) => {
                 source.kind() == std::io::ErrorKind::NotFound
             }
-            Self::Results(_) | Self::Arrow(_) => false,
+            Self::Results(_) | Self::Picture(_) | Self::Arrow(_) => false,
             _ => true,
         }
     }

@@ -3,11 +3,14 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use arrow_schema::DataType;
+use kavics_pictures::Layout;
 use kavics_results::{Columns, ResultsFolder, RunState, TableHead};
 
 use crate::column::PageColumn;
+use crate::graphs::{self, KeptLayout};
 use crate::made::{Made, breaks};
 use crate::piece::{RunTable, StepTable};
 use crate::read::{Precision, column, names, unit};
@@ -30,6 +33,7 @@ pub enum Content {
 pub struct PageFolder {
     results: ResultsFolder,
     root: PathBuf,
+    layout: KeptLayout,
 }
 
 impl PageFolder {
@@ -40,7 +44,11 @@ impl PageFolder {
     pub fn open(path: &Path) -> Result<Self, PageError> {
         let results = ResultsFolder::open(path)?;
         let root = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        Ok(Self { results, root })
+        Ok(Self {
+            results,
+            root,
+            layout: KeptLayout::default(),
+        })
     }
 
     /// The results themselves.
@@ -65,9 +73,17 @@ impl PageFolder {
                 let (columns, rows) = self.crosses(step)?;
                 Ok(Content::Arrow(stream(columns, rows)?))
             }
-            Piece::Dual | Piece::Cells(_) => Err(PageError::Unknown {
-                name: piece.to_string(),
-            }),
+            Piece::Dual => {
+                let (columns, rows) = graphs::dual(&*self.layout()?);
+                Ok(Content::Arrow(stream(columns, rows)?))
+            }
+            Piece::Cells(step) => {
+                for table in StepTable::EVERY_STEP {
+                    self.step_path(table, step)?;
+                }
+                let (columns, rows) = graphs::cells(&*self.layout()?, step)?;
+                Ok(Content::Arrow(stream(columns, rows)?))
+            }
         }
     }
 
@@ -97,7 +113,7 @@ impl PageFolder {
             load_steps,
             container: record.packing.map(|p| p.container).unwrap_or_default(),
             tables: self.tables(&recorded, &scene),
-            has: self.has(&recorded),
+            has: self.has(&recorded, record.packing.is_some()),
             recorded,
             scene,
             embedded: false,
@@ -106,7 +122,7 @@ impl PageFolder {
 
     /// The load steps of which all tables that every one has are there.
     pub(crate) fn recorded(&self) -> Result<Vec<usize>, PageError> {
-        let every = [StepTable::Grains, StepTable::Contacts, StepTable::Sides];
+        let every = StepTable::EVERY_STEP;
         let whole = |step: &usize| every.iter().all(|&table| self.is_there(table, *step));
         Ok(self
             .results
@@ -116,17 +132,23 @@ impl PageFolder {
             .collect())
     }
 
-    fn has(&self, recorded: &[usize]) -> Has {
+    /// What there is besides the tables of every load step; without a container no diagram is drawn.
+    fn has(&self, recorded: &[usize], container: bool) -> Has {
         let with = |table| -> Vec<usize> {
             let steps = recorded.iter().copied();
             steps.filter(|step| self.is_there(table, *step)).collect()
         };
         Has {
+            dual: container && recorded.first() == Some(&0),
+            cells: if container && recorded.first() == Some(&0) {
+                recorded.to_vec()
+            } else {
+                Vec::new()
+            },
             crosses: !recorded.is_empty(),
             voids: with(StepTable::Voids),
             cracks: with(StepTable::Cracks),
             modes: with(StepTable::Modes),
-            ..Has::default()
         }
     }
 
@@ -258,6 +280,16 @@ impl PageFolder {
         let path = self.own(self.root.join(RunTable::Steps.file()))?;
         let steps = Columns::read_some(&path, Some(&crosses::OF_STEPS))?;
         crosses::crosses(step, &grains, &contacts, &steps)
+    }
+
+    /// The undeformed assembly.
+    fn layout(&self) -> Result<Arc<Layout>, PageError> {
+        self.own(self.root.join("run.json"))?;
+        for table in StepTable::EVERY_STEP {
+            self.step_path(table, 0)?;
+        }
+        let grains = self.step_path(StepTable::Grains, 0)?;
+        self.layout.of(&self.results, &grains)
     }
 
     fn breaks(&self, step: usize) -> Result<Vec<(i64, i64)>, PageError> {

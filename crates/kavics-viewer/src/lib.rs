@@ -10,6 +10,7 @@ mod crosses;
 mod embed;
 mod error;
 mod folder;
+mod graphs;
 mod made;
 mod piece;
 mod read;

@@ -30,6 +30,9 @@ impl StepTable {
         Self::Modes,
     ];
 
+    /// Those that every recorded load step has.
+    pub const EVERY_STEP: [Self; 3] = [Self::Grains, Self::Contacts, Self::Sides];
+
     /// The name of the table and of its folder.
     pub fn name(self) -> &'static str {
         match self {
