@@ -248,7 +248,7 @@ fn of_window(
     let within = (0..x.len()).filter(|&grain| window[grain] == Some(1));
     let (mut centre, mut whole) = (Vector::default(), 0.0);
     for grain in within {
-        centre += Vector::new(x[grain], y[grain]) * area[grain];
+        centre = centre + Vector::new(x[grain], y[grain]) * area[grain];
         whole += area[grain];
     }
     let fabric = SymmetricTensor {

@@ -97,6 +97,7 @@ impl PageFolder {
         let scene = self.scene()?;
         let recorded = self.recorded()?;
         let load_steps = self.rows(RunTable::Steps);
+        let container = record.packing.map(|packing| packing.container);
         let ended = usize::from(record.state != RunState::Running);
         Ok(PageRun {
             format: FORMAT,
@@ -111,9 +112,9 @@ impl PageFolder {
             contacts: record.contacts,
             change: load_steps + recorded.len() + self.rows(RunTable::Events) + ended,
             load_steps,
-            container: record.packing.map(|p| p.container).unwrap_or_default(),
             tables: self.tables(&recorded, &scene),
-            has: self.has(&recorded, record.packing.is_some()),
+            has: self.has(&recorded, container.is_some()),
+            container: container.unwrap_or_default(),
             recorded,
             scene,
             embedded: false,
