@@ -7,6 +7,8 @@ use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
 use kavics_report::ReportError;
 use kavics_results::ResultsError;
+#[cfg(feature = "view")]
+use kavics_server::{PageError, ServerError};
 use thiserror::Error;
 
 /// Why a task failed.
@@ -47,6 +49,10 @@ pub enum Failure {
     /// The report could not be made.
     #[error("{0}")]
     Report(#[from] ReportError),
+    /// Nothing is served.
+    #[cfg(feature = "view")]
+    #[error("{0}")]
+    Server(#[from] ServerError),
     /// Standard output could not be written.
     #[error("stdout: {0}")]
     Output(#[from] std::io::Error),
@@ -60,6 +66,8 @@ impl Failure {
     pub fn status(&self) -> ExitCode {
         let results = match self {
             Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),
+            #[cfg(feature = "view")]
+            Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
             _ => None,
         };
         if let Some(
@@ -81,6 +89,8 @@ impl Failure {
             | Self::Report(_)
             | Self::Output(_)
             | Self::Threads(_) => 4,
+            #[cfg(feature = "view")]
+            Self::Server(_) => 4,
         })
     }
 }

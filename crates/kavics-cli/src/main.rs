@@ -14,6 +14,8 @@ mod run;
 mod scene_file;
 mod summary;
 mod texts;
+#[cfg(feature = "view")]
+mod view;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -43,6 +45,8 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        #[cfg(feature = "view")]
+        Task::View(arguments) => view::view(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),
