@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 
+use crate::draw_arguments::DrawArguments;
+
 const STATUS: &str = "\
 Exit status:
   0  done
@@ -35,6 +37,8 @@ pub enum Task {
     Measure(MeasureArguments),
     /// Write the report of finished results: one page, no network
     Report(ReportArguments),
+    /// Draw the assembly at a load step, or curves, for a paper
+    Draw(DrawArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -127,12 +131,13 @@ pub struct ManArguments {
 }
 
 /// The tasks that have a manual page.
-const TASKS: [&str; 8] = [
+const TASKS: [&str; 9] = [
     "check",
     "pack",
     "run",
     "measure",
     "report",
+    "draw",
     "schema",
     "completions",
     "man",

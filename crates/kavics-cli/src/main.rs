@@ -3,6 +3,8 @@
 mod arguments;
 mod check;
 mod compared;
+mod draw;
+mod draw_arguments;
 mod failure;
 mod measure;
 mod origins;
@@ -43,6 +45,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        Task::Draw(arguments) => draw::draw(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),
