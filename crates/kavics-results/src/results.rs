@@ -150,9 +150,13 @@ impl<'a> Results<'a> {
         let row = StepRow {
             iterations: iterate.iteration,
             residual: iterate.residual,
-            energy: None,
+            energy: iterate.ledger.map(|(_, energy)| energy),
             iteration: Some(iterate.iteration),
             ..self.row_of_state(equilibrium, &iterate.state, measures)
+        };
+        let row = match iterate.ledger {
+            Some((load_factor, _)) => StepRow { load_factor, ..row },
+            None => row,
         };
         self.iterates.push(row);
     }

@@ -214,6 +214,7 @@ fn remembered(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     way.events.extend(happened);
     for bond in configuration.bonds.values_mut() {
@@ -298,6 +299,7 @@ pub fn break_softened(
                 release_energy: 0.0,
             },
             avalanche: None,
+            drive: None,
         });
     }
 }
@@ -432,6 +434,7 @@ pub(super) fn break_bonds(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     }
     let (next, released) = equilibrium(system, &start, &vanishing, action, load_factor, way)?;
@@ -542,6 +545,7 @@ pub fn first_events(point: &Point) -> Vec<Event> {
             load_factor: 0.0,
             kind: EventKind::SetAside(grain),
             avalanche: None,
+            drive: None,
         })
         .collect()
 }
