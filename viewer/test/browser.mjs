@@ -95,7 +95,7 @@ export async function find(page, kind, id) {
   await page.getByLabel("What to find").selectOption(kind);
   await page.getByLabel("Number of the grain or contact").fill(String(id));
   await page.getByRole("button", { name: "Find" }).click();
-  await page.locator(".numbers h3").filter({ hasText: new RegExp(`${kind} ${id}\\b`, "i") }).waitFor();
+  await page.locator(".numbers .name").filter({ hasText: new RegExp(`${kind} ${id}\\b`, "i") }).waitFor();
 }
 
 /** Middle of the mark around the selected grain, in the window. */

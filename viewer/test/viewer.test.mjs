@@ -69,7 +69,7 @@ describe("a served run", () => {
     await layer(page, "forces").uncheck();
     await layer(page, "broken").uncheck();
     await page.mouse.click(place.x, place.y);
-    await page.locator(".numbers h3", { hasText: "Grain 345" }).waitFor();
+    await page.locator(".numbers .name", { hasText: "Grain 345" }).waitFor();
     assert.match(await page.locator(".numbers dl").textContent(), /radius0\.\d+.*cell area/s);
     await layer(page, "forces").check();
     await layer(page, "broken").check();
@@ -169,11 +169,11 @@ describe("a served run", () => {
     assert.equal(await layer(page, "grains").isChecked(), false);
     await page.keyboard.press("g");
     await page.keyboard.press("Enter");
-    await page.locator(".numbers h3").waitFor();
+    await page.locator(".numbers .name").waitFor();
     await page.keyboard.press("/");
     await page.keyboard.type("7");
     await page.keyboard.press("Enter");
-    await page.locator(".numbers h3", { hasText: "Grain 7" }).waitFor();
+    await page.locator(".numbers .name", { hasText: "Grain 7" }).waitFor();
   });
 
   test("has caused no error in all this", () => assert.deepEqual(page.wrong, []));
