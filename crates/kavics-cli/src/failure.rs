@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
-use kavics_report::ReportError;
+use kavics_report::{PageError, ReportError};
 use kavics_results::ResultsError;
 #[cfg(feature = "view")]
-use kavics_server::{PageError, ServerError};
+use kavics_server::ServerError;
 use thiserror::Error;
 
 /// Why a task failed.
@@ -65,7 +65,10 @@ impl Failure {
     /// The exit status.
     pub fn status(&self) -> ExitCode {
         let results = match self {
-            Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),
+            Self::Results(error)
+            | Self::Report(
+                ReportError::Results(error) | ReportError::Viewer(PageError::Results(error)),
+            ) => Some(error),
             #[cfg(feature = "view")]
             Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
             _ => None,
@@ -82,7 +85,10 @@ impl Failure {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
-            Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
+            Self::Scene(SceneError::Wrong(_))
+            | Self::Override { .. }
+            | Self::Window { .. }
+            | Self::Report(ReportError::Viewer(PageError::Unrecorded { .. })) => 2,
             Self::NoEquilibrium { .. } => 3,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
