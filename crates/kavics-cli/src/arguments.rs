@@ -7,6 +7,8 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use kavics_report::StepChoice;
 
+use crate::draw_arguments::DrawArguments;
+
 const STATUS: &str = "\
 Exit status:
   0  done
@@ -40,6 +42,8 @@ pub enum Task {
     /// Show results in the browser: served to this machine only, until Ctrl-C
     #[cfg(feature = "view")]
     View(ViewArguments),
+    /// Draw the assembly at a load step, or curves, for a paper
+    Draw(DrawArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -156,6 +160,7 @@ const TASKS: &[&str] = &[
     "report",
     #[cfg(feature = "view")]
     "view",
+    "draw",
     "schema",
     "completions",
     "man",

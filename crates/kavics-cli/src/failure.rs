@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
+use kavics_pictures::PictureError;
 use kavics_report::{PageError, ReportError};
 use kavics_results::ResultsError;
 #[cfg(feature = "view")]
@@ -53,6 +54,9 @@ pub enum Failure {
     #[cfg(feature = "view")]
     #[error("{0}")]
     Server(#[from] ServerError),
+    /// A picture could not be made.
+    #[error("{0}")]
+    Picture(#[from] PictureError),
     /// Standard output could not be written.
     #[error("stdout: {0}")]
     Output(#[from] std::io::Error),
@@ -68,7 +72,8 @@ impl Failure {
             Self::Results(error)
             | Self::Report(
                 ReportError::Results(error) | ReportError::Viewer(PageError::Results(error)),
-            ) => Some(error),
+            )
+            | Self::Picture(PictureError::Results(error)) => Some(error),
             #[cfg(feature = "view")]
             Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
             _ => None,
@@ -85,6 +90,7 @@ impl Failure {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
+            Self::Picture(error) if error.is_wrong_usage() => 2,
             Self::Scene(SceneError::Wrong(_))
             | Self::Override { .. }
             | Self::Window { .. }
@@ -93,6 +99,7 @@ impl Failure {
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)
+            | Self::Picture(_)
             | Self::Output(_)
             | Self::Threads(_) => 4,
             #[cfg(feature = "view")]
