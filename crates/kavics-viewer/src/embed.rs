@@ -313,9 +313,8 @@ fn sentences(level: Level, wanted: &[usize], steps: &[usize]) -> Vec<String> {
     let mut sentences = Vec::new();
     if steps.len() < wanted.len() {
         sentences.push(format!(
-            "Of {} load steps with tables {} are shown: {}.",
+            "Of {} load steps these are shown: {}.",
             wanted.len(),
-            steps.len(),
             listed(steps)
         ));
     }
