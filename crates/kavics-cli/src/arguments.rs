@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use kavics_report::StepChoice;
+
+use crate::draw_arguments::DrawArguments;
 
 const STATUS: &str = "\
 Exit status:
@@ -39,6 +42,8 @@ pub enum Task {
     /// Show results in the browser: served to this machine only, until Ctrl-C
     #[cfg(feature = "view")]
     View(ViewArguments),
+    /// Draw the assembly at a load step, or curves, for a paper
+    Draw(DrawArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -115,6 +120,9 @@ pub struct ReportArguments {
     /// File to write; DIR/report.html when absent
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Recorded load steps in the viewer, e.g. 0,10,last; as many as fit when absent
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', value_parser = load_step)]
+    pub steps: Option<Vec<usize>>,
 }
 
 #[cfg(feature = "view")]
@@ -152,10 +160,20 @@ const TASKS: &[&str] = &[
     "report",
     #[cfg(feature = "view")]
     "view",
+    "draw",
     "schema",
     "completions",
     "man",
 ];
+
+fn load_step(text: &str) -> Result<usize, String> {
+    match text.trim() {
+        "last" => Ok(StepChoice::LAST),
+        number => number.parse().map_err(|_| {
+            "expected numbers of load steps or \"last\", with commas between".to_owned()
+        }),
+    }
+}
 
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {

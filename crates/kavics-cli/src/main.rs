@@ -3,6 +3,8 @@
 mod arguments;
 mod check;
 mod compared;
+mod draw;
+mod draw_arguments;
 mod failure;
 mod measure;
 mod origins;
@@ -47,6 +49,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Report(arguments) => texts::report(&arguments),
         #[cfg(feature = "view")]
         Task::View(arguments) => view::view(&arguments),
+        Task::Draw(arguments) => draw::draw(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

@@ -102,6 +102,12 @@ impl Columns {
         fields.map(|field| field.name().as_str()).collect()
     }
 
+    /// The dimension of a column, as in the metadata of its field; none where there is no such column.
+    pub fn unit(&self, column: &str) -> Option<&str> {
+        let field = self.schema.field_with_name(column).ok()?;
+        field.metadata().get("unit").map(String::as_str)
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows

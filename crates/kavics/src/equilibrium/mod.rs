@@ -6,12 +6,15 @@ mod balance;
 mod block_stiffness;
 pub(crate) mod bond;
 pub(crate) mod configuration;
+pub(crate) mod configuration_memory;
 pub(crate) mod elastic;
 mod elimination;
 mod error;
 mod iterative;
+pub(crate) mod kept;
 mod kinematics;
 mod linear;
+pub(crate) mod memory;
 mod search;
 pub(crate) mod side_sums;
 mod sparsity;
@@ -22,6 +25,7 @@ mod tangent;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
+pub use memory::{Memory, MemoryColumn, MemoryError};
 pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
 

@@ -1,5 +1,8 @@
 //! The assembly as a system of equations: unknowns, pieces, forces and what they leave unbalanced.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 
 use super::bond::Bond;
@@ -36,13 +39,17 @@ pub struct System<'a> {
     /// Why systems are solved directly though they were to be solved by iteration.
     pub breakdown: Option<Breakdown>,
     /// Values that the symmetric factor belongs to, and the signs of its pivots.
-    pub(super) factored: Option<(Vec<f64>, Inertia)>,
+    pub(super) factored: Option<(Arc<Vec<f64>>, Inertia)>,
     /// Bodies left out: nothing holds and nothing loads their piece.
     pub set_aside: Vec<bool>,
     /// Largest contact force of any equilibrium so far: below its rounding there is no force.
     pub largest_force: f64,
     /// Largest contact force if only the moved bodies moved, `[force]`.
     pub moved_force: f64,
+    /// Set from outside: the search ends with its present iteration.
+    pub stop: Option<Arc<AtomicBool>>,
+    /// A search has ended so.
+    pub stopped: bool,
 }
 
 /// Unbalanced loads and the scale to see them by.
@@ -120,12 +127,20 @@ impl<'a> System<'a> {
             factored: None,
             largest_force: 0.0,
             moved_force: 0.0,
+            stop: None,
+            stopped: false,
         }
     }
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.unknowns
+    }
+
+    /// Whether the search is to end; what it finds then is no result.
+    pub(super) fn ends_here(&mut self) -> bool {
+        self.stopped |= is_set(self.stop.as_ref());
+        self.stopped
     }
 
     /// Numbers of the unknowns of a body.
@@ -290,6 +305,11 @@ impl<'a> System<'a> {
             .iter()
             .any(|bond| self.has_phases(bond))
     }
+}
+
+/// Whether somebody wants the search to end.
+pub fn is_set(stop: Option<&Arc<AtomicBool>>) -> bool {
+    stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
 }
 
 /// The secant or the tangent of a contact.

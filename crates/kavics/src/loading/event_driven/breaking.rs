@@ -95,6 +95,8 @@ impl Walk<'_, '_> {
         let q = old.forces(v);
         let bond = &mut self.point.configuration.bonds[contact];
         let before = *bond;
+        let property = before.property.map(|property| (contact, property));
+        self.course.broken.extend(property);
         bond.displacement = relative_at(v, self.x);
         bond.force = force_at(q, self.x);
         let held = bond.energy(system.properties);

@@ -8,9 +8,9 @@ use crate::ids::{BodyId, Id};
 /// Loads and reactions with the displacements on which they work.
 #[derive(Clone, Debug, Default)]
 pub struct Outer {
-    loads: Vec<(Load, Displacement)>,
+    pub(super) loads: Vec<(Load, Displacement)>,
     /// Reaction and value of each moved freedom.
-    moved: Vec<[f64; 2]>,
+    pub(super) moved: Vec<[f64; 2]>,
 }
 
 /// Where something acts from outside.
