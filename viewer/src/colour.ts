@@ -5,9 +5,12 @@ import type { Range } from "./store";
 export type Rgb = [number, number, number];
 export type MapName = "sequential" | "order" | "diverging" | "words";
 
-// Stops of viridis and cividis (Nuñez, Anderton and Renslow 2018; both read by the colour-blind), evenly spaced.
+// Stops of viridis and of parts of magma (van der Walt and Smith 2015), evenly spaced; the colour-blind can read both.
 const VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725";
-const CIVIDIS = "00224e 123570 3b496c 575d6d 707173 8a8678 a59c74 c3b369 e1cc55 fee838";
+const ORDER = {
+  light: "180f3d 440f76 721f81 9e2f7f cd4071 f1605d fd9668",
+  dark: "9e2f7f cd4071 f1605d fd9668 feca8d fcfdbf",
+};
 // Blue for less, orange for more; the middle is near the ground of the picture.
 const DIVERGING = {
   light: "0b3c7d 2f6fb5 7fb0dc d3e3ee f1efeb f7ddc0 efae6a cc6f1b 8a3f05",
@@ -24,7 +27,7 @@ function stops(text: string): Rgb[] {
 
 function stopsOf(map: MapName, theme: "light" | "dark"): Rgb[] {
   if (map === "sequential") return stops(VIRIDIS);
-  if (map === "order") return stops(CIVIDIS);
+  if (map === "order") return stops(ORDER[theme]);
   return stops(map === "words" ? WORDS : DIVERGING[theme]);
 }
 

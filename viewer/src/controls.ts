@@ -52,7 +52,7 @@ export function controls(store: Store): HTMLElement {
 function row(store: Store, { layer, text, key, coloured }: Entry): HTMLElement {
   const box = element("input", { type: "checkbox", "data-layer": layer, checked: store.state.layers[layer], change: () => toggle(store, layer) });
   const label = element("label", {}, box, element("span", {}, text), element("kbd", { "aria-hidden": "true" }, key));
-  const extra = coloured ? colour(store, coloured) : layer === "modes" ? modes(store) : null;
+  const extra = coloured && colourColumns(store.state.run, coloured).length > 0 ? colour(store, coloured) : layer === "modes" ? modes(store) : null;
   return element("li", {}, label, extra);
 }
 

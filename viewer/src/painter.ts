@@ -80,7 +80,7 @@ export class Painter {
       ["graph", 1.4 * hair, { u_plain: unit(palette.graph, 0.9) }],
       ["forces", state.width * radius,
         state.colour.forces ? mapping(scales.forces, unit(palette.graph, 1)) : signs, state.colour.forces ? scales.forces : undefined],
-      ["broken", Math.max(3 * hair, 1.5 * view.density), mapping(scales.broken, unit(palette.mode, 1)), scales.broken],
+      ["broken", Math.max(3 * hair, 2 * view.density), mapping(scales.broken, unit(palette.mode, 1)), scales.broken],
       ["modes", 1.6 * hair, { u_plain: unit(palette.mode, 1) }],
       ["fabric", 2 * view.density, { u_plain: unit(palette.fabric, 1) }],
       ["stress", 2.4 * view.density, signs],

@@ -48,7 +48,7 @@ export class Panel {
     const table = `${selection.kind}s`;
     const row = (await this.source.row(table, step, selection.id)) ?? (await this.embeddedRow(table, step, selection.id, run));
     const close = element("button", { class: "icon", "aria-label": "Close", title: "Close (Esc)", click: () => this.store.set({ selection: null }) }, "×");
-    const heading = element("h3", {}, `${selection.kind === "grain" ? "Grain" : "Contact"} ${selection.id}`, close);
+    const heading = element(run.embedded ? "h3" : "h2", { class: "name" }, `${selection.kind === "grain" ? "Grain" : "Contact"} ${selection.id}`, close);
     const units = new Map((run.tables[table] ?? []).map((column) => [column.name, column.unit]));
     const list = element("dl", {});
     for (const [name, value] of Object.entries(row)) {

@@ -64,7 +64,7 @@ export class Viewer {
     listenToKeys(run.embedded ? this.root : document, this.store, {
       camera: this.camera, theme: () => this.toggleTheme(),
       information: () => dialogs.information.showModal(), help: () => dialogs.help.showModal(),
-      find: () => aside.querySelector<HTMLInputElement>(".find")?.focus(),
+      find: () => aside.querySelector<HTMLInputElement>(".find")?.select(),
     });
     this.follow();
     this.loadFactors(new Progress(this.tables, this.store));
@@ -90,7 +90,11 @@ export class Viewer {
 
   private load(): void {
     this.outdated = true;
-    this.loading ??= this.loadAll().finally(() => (this.loading = null));
+    this.loading ??= this.loadAll().finally(() => {
+      this.loading = null;
+      this.redraw();
+    });
+    this.tellBusy();
   }
 
   private async loadAll(): Promise<void> {
@@ -131,6 +135,7 @@ export class Viewer {
   /** Draws soon, and only once however often it is asked. */
   private redraw(): void {
     if (this.frame || !this.painter) return;
+    this.tellBusy(true);
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       const { state } = this.store;
@@ -138,7 +143,12 @@ export class Viewer {
       this.overlay.draw(state, this.picture, this.camera);
       this.legend.update(state, this.picture);
       this.describe(state);
+      this.tellBusy();
     });
+  }
+
+  private tellBusy(busy = this.loading !== null): void {
+    this.canvas.parentElement?.setAttribute("aria-busy", String(busy));
   }
 
   /** Says what the picture shows, to those who cannot see it and to tests. */

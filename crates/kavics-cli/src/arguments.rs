@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use kavics_report::StepChoice;
 
 use crate::draw_arguments::DrawArguments;
 
@@ -119,6 +120,9 @@ pub struct ReportArguments {
     /// File to write; DIR/report.html when absent
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Recorded load steps in the viewer, e.g. 0,10,last; as many as fit when absent
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', value_parser = load_step)]
+    pub steps: Option<Vec<usize>>,
 }
 
 #[cfg(feature = "view")]
@@ -161,6 +165,15 @@ const TASKS: &[&str] = &[
     "completions",
     "man",
 ];
+
+fn load_step(text: &str) -> Result<usize, String> {
+    match text.trim() {
+        "last" => Ok(StepChoice::LAST),
+        number => number.parse().map_err(|_| {
+            "expected numbers of load steps or \"last\", with commas between".to_owned()
+        }),
+    }
+}
 
 fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {

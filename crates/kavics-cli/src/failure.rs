@@ -6,10 +6,10 @@ use std::process::ExitCode;
 use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
 use kavics_pictures::PictureError;
-use kavics_report::ReportError;
+use kavics_report::{PageError, ReportError};
 use kavics_results::ResultsError;
 #[cfg(feature = "view")]
-use kavics_server::{PageError, ServerError};
+use kavics_server::ServerError;
 use thiserror::Error;
 
 /// Why a task failed.
@@ -70,7 +70,9 @@ impl Failure {
     pub fn status(&self) -> ExitCode {
         let results = match self {
             Self::Results(error)
-            | Self::Report(ReportError::Results(error))
+            | Self::Report(
+                ReportError::Results(error) | ReportError::Viewer(PageError::Results(error)),
+            )
             | Self::Picture(PictureError::Results(error)) => Some(error),
             #[cfg(feature = "view")]
             Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
@@ -89,7 +91,10 @@ impl Failure {
         }
         ExitCode::from(match self {
             Self::Picture(error) if error.is_wrong_usage() => 2,
-            Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
+            Self::Scene(SceneError::Wrong(_))
+            | Self::Override { .. }
+            | Self::Window { .. }
+            | Self::Report(ReportError::Viewer(PageError::Unrecorded { .. })) => 2,
             Self::NoEquilibrium { .. } => 3,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)

@@ -3,13 +3,17 @@
 use std::io::{Write, stdout};
 
 use clap::CommandFactory;
+use kavics_report::StepChoice;
 
 use crate::arguments::{Arguments, CompletionsArguments, ManArguments, ReportArguments};
 use crate::failure::Failure;
 use crate::scene_file::say;
 
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
-    let path = kavics_report::write(&arguments.results, arguments.output.as_deref())?;
+    let steps = arguments.steps.clone();
+    let steps = steps.map_or(StepChoice::Fitting, StepChoice::Named);
+    let output = arguments.output.as_deref();
+    let path = kavics_report::write_steps(&arguments.results, output, &steps)?;
     say(&format!("report: {}\n", path.display()));
     Ok(())
 }

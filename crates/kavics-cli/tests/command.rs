@@ -39,6 +39,7 @@ fn every_task_has_a_help() {
         "run",
         "measure",
         "report",
+        "view",
         "schema",
         "completions",
         "man",
@@ -128,6 +129,16 @@ fn a_report_of_no_results_is_refused() {
     fs::create_dir(place.path().join("empty")).expect("room on the disk");
     insta::assert_snapshot!(answer(place.path(), &["report", "empty"]));
     insta::assert_snapshot!(answer(place.path(), &["measure", "absent"]));
+}
+
+#[test]
+fn a_view_of_no_results_is_refused() {
+    let place = place();
+    let answer = answer(place.path(), &["view", ".", "--no-open"]);
+    assert_eq!(
+        answer,
+        "status 2\n. is not a results folder (it has no run.json)\n"
+    );
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Why there is no report.
 
 use kavics_results::ResultsError;
+use kavics_viewer::PageError;
 use thiserror::Error;
 
 use crate::ComparedError;
@@ -14,6 +15,9 @@ pub enum ReportError {
     /// The table to compare with is wrong.
     #[error("compare.csv: {0}")]
     Compared(#[from] ComparedError),
+    /// The viewer's data could not be read, or do not hold what was asked for.
+    #[error("{0}")]
+    Viewer(#[from] PageError),
     /// The page could not be filled in: our own mistake.
     #[error("report: {0}")]
     Page(#[from] minijinja::Error),

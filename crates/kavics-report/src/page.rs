@@ -48,6 +48,7 @@ struct Page {
     events: Table,
     comparison: Option<Comparison>,
     compared: Vec<ComparedRow>,
+    scene: String,
 }
 
 /// A picture of the contact graph.
@@ -119,6 +120,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         events: events_table(&events)?,
         compared: comparison.as_ref().map(compared_rows).unwrap_or_default(),
         comparison,
+        scene: folder.scene()?,
         record,
     };
     let template = environment.get_template("report.html")?;

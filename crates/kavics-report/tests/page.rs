@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use kavics::packing::{Mass, SieveCurve};
 use kavics::scene::Scene;
-use kavics_report::Comparison;
+use kavics_report::{Comparison, StepChoice};
 use kavics_results::ResultsFolder;
 
 fn page_of(place: &Path, scene: &Scene) -> String {
@@ -31,15 +31,55 @@ fn with_table(place: &Path, text: &str) -> Scene {
     }
 }
 
+/// The only script that runs, and the page without it.
+fn parted(page: &str) -> (String, String) {
+    assert_eq!(page.matches("<script>").count(), 1);
+    let (before, rest) = page.split_once("<script>").expect("a script");
+    let (script, after) = rest.split_once("</script>").expect("its end");
+    (script.to_owned(), format!("{before}{after}"))
+}
+
 #[test]
-fn the_page_needs_no_script_and_no_network() {
+fn the_page_has_the_script_of_the_viewer_alone_and_no_network() {
     let place = place();
     let page = page_of(place.path(), &block::scene(7, 5));
+    let (script, rest) = parted(&page);
+    let policy = format!(
+        "content=\"default-src 'none'; script-src {};",
+        kavics_viewer::admitted(&script)
+    );
+    assert!(rest.contains(&policy), "{policy}");
     for foreign in [
-        "<script", "http://", "https://", "url(", "@import", "<link", "<img",
+        "http://", "https://", "url(", "@import", "<link", "<img", " src=", "<iframe", "onclick",
     ] {
-        assert!(!page.contains(foreign), "{foreign}");
+        assert!(!rest.contains(foreign), "{foreign}");
     }
+}
+
+#[test]
+fn the_viewer_has_the_data_of_its_load_steps() {
+    let place = place();
+    let page = page_of(place.path(), &block::scene(7, 5));
+    for part in ["run.json", "steps", "events", "grains/0", "contacts/5"] {
+        assert!(page.contains(&format!("data-name=\"{part}\"")), "{part}");
+    }
+    let path = place.path().join("two.html");
+    let two = StepChoice::Named(vec![3, StepChoice::LAST]);
+    let folder = place.path().join("block.results");
+    kavics_report::write_steps(&folder, Some(&path), &two).expect("a report");
+    let page = fs::read_to_string(path).expect("a page");
+    assert!(page.contains("data-name=\"grains/3\"") && !page.contains("data-name=\"grains/0\""));
+}
+
+#[test]
+fn the_scene_stands_in_the_page_as_text() {
+    let place = place();
+    let mut scene = block::scene(7, 5);
+    scene.text = "title = \"a <b>\"".to_owned();
+    let (_, rest) = parted(&page_of(place.path(), &scene));
+    let shown = rest.split_once("<pre class=\"scene\">").expect("a scene").1;
+    assert!(shown.contains("a &lt;b&gt;"), "{shown}");
+    assert!(!rest.contains("a <b>"));
 }
 
 #[test]
@@ -259,9 +299,11 @@ fn results_without_a_load_step_have_a_page() {
 }
 
 #[test]
-fn a_large_assembly_stays_below_fifteen_megabytes() {
+fn a_large_assembly_stays_below_thirty_megabytes_and_says_what_is_left_out() {
     let place = place();
     let page = page_of(place.path(), &block::scene(317, 316));
-    assert!(page.len() < 15_000_000, "{}", page.len());
+    assert!(page.len() < 30_000_000, "{}", page.len());
+    assert!(page.contains("<h2>Viewer</h2>"));
+    assert!(page.contains("<code>kavics view</code> shows all."));
     assert!(!page.contains("class=\"grain\""));
 }

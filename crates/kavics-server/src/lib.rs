@@ -11,5 +11,4 @@ mod serve;
 
 pub use browser::open_browser;
 pub use error::ServerError;
-pub use kavics_viewer::PageError;
 pub use serve::Server;

@@ -74,6 +74,12 @@ pub fn embed(
         StepChoice::Named(_) => wanted.len(),
     };
     let chosen = chosen(&costs, &wanted, enough, left);
+    if chosen
+        .as_ref()
+        .is_some_and(|(level, _)| *level == Level::All)
+    {
+        left_out.extend(embedding.leave_out_graphs());
+    }
     let found = chosen.map(|(level, steps)| embedding.of_steps(level, steps, left));
     let Some((level, steps, elements)) = found.transpose()?.flatten() else {
         return Ok(Embedded {
@@ -133,6 +139,19 @@ impl Embedding<'_> {
         }
         self.run.tables.remove(RunTable::Events.name());
         vec![format!("The {events} events are left out.")]
+    }
+
+    /// Leaves out the dual graph and the void cells where the results do not tell them.
+    fn leave_out_graphs(&mut self) -> Option<String> {
+        if !self.run.has.dual {
+            return None;
+        }
+        let error = self.folder.layout().err()?;
+        self.run.has.dual = false;
+        self.run.has.cells.clear();
+        Some(format!(
+            "The dual graph and the void cells are left out: {error}."
+        ))
     }
 
     /// The tables of the whole run.
@@ -294,9 +313,8 @@ fn sentences(level: Level, wanted: &[usize], steps: &[usize]) -> Vec<String> {
     let mut sentences = Vec::new();
     if steps.len() < wanted.len() {
         sentences.push(format!(
-            "Of {} load steps with tables {} are shown: {}.",
+            "Of {} load steps these are shown: {}.",
             wanted.len(),
-            steps.len(),
             listed(steps)
         ));
     }

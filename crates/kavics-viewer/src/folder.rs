@@ -284,7 +284,7 @@ impl PageFolder {
     }
 
     /// The undeformed assembly.
-    fn layout(&self) -> Result<Arc<Layout>, PageError> {
+    pub(crate) fn layout(&self) -> Result<Arc<Layout>, PageError> {
         self.own(self.root.join("run.json"))?;
         for table in StepTable::EVERY_STEP {
             self.step_path(table, 0)?;
