@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::draw_arguments::DrawArguments;
+use crate::export::ExportArguments;
 
 const STATUS: &str = "\
 Exit status:
@@ -39,6 +40,8 @@ pub enum Task {
     Report(ReportArguments),
     /// Draw the assembly at a load step, or curves, for a paper
     Draw(DrawArguments),
+    /// Write results for other programs
+    Export(ExportArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -131,13 +134,14 @@ pub struct ManArguments {
 }
 
 /// The tasks that have a manual page.
-const TASKS: [&str; 9] = [
+const TASKS: [&str; 10] = [
     "check",
     "pack",
     "run",
     "measure",
     "report",
     "draw",
+    "export",
     "schema",
     "completions",
     "man",

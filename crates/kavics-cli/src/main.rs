@@ -5,6 +5,7 @@ mod check;
 mod compared;
 mod draw;
 mod draw_arguments;
+mod export;
 mod failure;
 mod measure;
 mod origins;
@@ -46,6 +47,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
         Task::Draw(arguments) => draw::draw(&arguments),
+        Task::Export(arguments) => export::export(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

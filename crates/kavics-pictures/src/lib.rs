@@ -32,7 +32,7 @@ mod write;
 
 pub use breaks::{Break, breaks};
 pub use curves::{CurveRequest, draw_curves};
-pub use draw::{Request, What, draw};
+pub use draw::{Request, What, draw, recorded_step};
 pub use error::PictureError;
 pub use forces::no_force;
 pub use ink::{ColourMap, Ink, SHADES, Theme};
