@@ -8,6 +8,8 @@ use kavics::scene::SceneError;
 use kavics_pictures::PictureError;
 use kavics_report::ReportError;
 use kavics_results::ResultsError;
+#[cfg(feature = "view")]
+use kavics_server::{PageError, ServerError};
 use thiserror::Error;
 
 /// Why a task failed.
@@ -48,6 +50,10 @@ pub enum Failure {
     /// The report could not be made.
     #[error("{0}")]
     Report(#[from] ReportError),
+    /// Nothing is served.
+    #[cfg(feature = "view")]
+    #[error("{0}")]
+    Server(#[from] ServerError),
     /// A picture could not be made.
     #[error("{0}")]
     Picture(#[from] PictureError),
@@ -66,6 +72,8 @@ impl Failure {
             Self::Results(error)
             | Self::Report(ReportError::Results(error))
             | Self::Picture(PictureError::Results(error)) => Some(error),
+            #[cfg(feature = "view")]
+            Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
             _ => None,
         };
         if let Some(
@@ -89,6 +97,8 @@ impl Failure {
             | Self::Picture(_)
             | Self::Output(_)
             | Self::Threads(_) => 4,
+            #[cfg(feature = "view")]
+            Self::Server(_) => 4,
         })
     }
 }

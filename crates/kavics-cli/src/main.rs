@@ -17,6 +17,8 @@ mod run;
 mod scene_file;
 mod summary;
 mod texts;
+#[cfg(feature = "view")]
+mod view;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -46,6 +48,8 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        #[cfg(feature = "view")]
+        Task::View(arguments) => view::view(&arguments),
         Task::Draw(arguments) => draw::draw(&arguments),
         Task::Export(arguments) => export::export(&arguments),
         Task::Schema => texts::schema(),

@@ -57,6 +57,7 @@ pub struct Results<'a> {
     action_rows: Vec<ActionRow>,
     broken: usize,
     held: PerGrain<bool>,
+    in_window: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
     solver_warnings: SolverWarnings,
     log: Log,
@@ -91,6 +92,7 @@ impl<'a> Results<'a> {
             action_rows: Vec::new(),
             broken: 0,
             held: held_grains(scene),
+            in_window: window_grains(scene),
             unrecorded: None,
             solver_warnings: SolverWarnings::default(),
             log: Log::open(),
@@ -148,9 +150,13 @@ impl<'a> Results<'a> {
         let row = StepRow {
             iterations: iterate.iteration,
             residual: iterate.residual,
-            energy: None,
+            energy: iterate.ledger.map(|(_, energy)| energy),
             iteration: Some(iterate.iteration),
             ..self.row_of_state(equilibrium, &iterate.state, measures)
+        };
+        let row = match iterate.ledger {
+            Some((load_factor, _)) => StepRow { load_factor, ..row },
+            None => row,
         };
         self.iterates.push(row);
     }
@@ -311,6 +317,7 @@ impl<'a> Results<'a> {
                 cell_area: assembly.cell_area[id],
                 stress: grain_stress[id],
                 state: self.grain_state(equilibrium, id, contacts[id]),
+                in_window: self.in_window[id],
             }
         };
         range.map(GrainId::from_index).map(row).collect()
@@ -402,6 +409,15 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         warnings: scene.warnings.clone(),
         packing: Some(PackingRecord::of(scene)),
     }
+}
+
+/// Grains that are measured.
+fn window_grains(scene: &Scene) -> PerGrain<bool> {
+    let mut within = PerGrain::filled(false, scene.assembly.grains.len());
+    for &grain in &scene.window {
+        within[grain] = true;
+    }
+    within
 }
 
 /// Grains of which some freedom is held or moved.

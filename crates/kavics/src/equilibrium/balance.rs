@@ -57,6 +57,9 @@ impl System<'_> {
             let falls = history.push(imbalance.largest);
             let floppy = progress.held_pivots > 0 && history.len() > 1 && falls > STUCK;
             let failure = not_converged(progress, &imbalance);
+            if self.ends_here() {
+                return Err(failure);
+            }
             if floppy || history.is_over(iteration) {
                 configuration.displacements = start;
                 let iteration = if floppy { Iteration::Secant } else { iteration };
@@ -194,6 +197,7 @@ impl System<'_> {
                 iteration,
                 residual,
                 state: configuration.state(),
+                ledger: None,
             });
         }
     }

@@ -29,6 +29,8 @@ pub struct Iterating {
     solver: Option<IterativeSolver<FREEDOMS>>,
     /// Of the matrix that the solver has.
     fingerprint: u64,
+    /// Of the matrix that its hierarchy was made for.
+    made_for: u64,
 }
 
 impl System<'_> {
@@ -53,15 +55,7 @@ impl System<'_> {
         general: bool,
         right: &mut [f64],
     ) -> Result<(), Breakdown> {
-        let mut kept = self.iterating.take().unwrap_or_else(|| {
-            let order = self.node_order();
-            Iterating {
-                units: self.load_units(&order),
-                order,
-                solver: None,
-                fingerprint: 0,
-            }
-        });
+        let mut kept = self.take_iterating();
         // The multigrid is that of a symmetric matrix.
         let symmetric = if general {
             Iteration::Secant
@@ -74,6 +68,52 @@ impl System<'_> {
         let solved = self.run(&mut kept, configuration, general, right);
         self.iterating = Some(kept);
         solved
+    }
+
+    fn take_iterating(&mut self) -> Iterating {
+        self.iterating.take().unwrap_or_else(|| {
+            let order = self.node_order();
+            Iterating {
+                units: self.load_units(&order),
+                order,
+                solver: None,
+                fingerprint: 0,
+                made_for: 0,
+            }
+        })
+    }
+
+    /// Before a load step: a hierarchy of another stiffness than the present one is dropped, so that what is kept
+    /// follows from the point where the load step begins.
+    pub fn drop_old_hierarchy(&mut self, configuration: &Configuration) {
+        if self.hierarchy(configuration).is_none()
+            && let Some(kept) = &mut self.iterating
+        {
+            kept.solver = None;
+        }
+    }
+
+    /// Iterations of the solver, if its hierarchy is that of the secants of a configuration.
+    pub(super) fn hierarchy(&self, configuration: &Configuration) -> Option<[usize; 2]> {
+        let kept = self.iterating.as_ref()?;
+        let solver = kept.solver.as_ref()?;
+        let present = self.fingerprint(configuration, Iteration::Secant);
+        (kept.made_for == present).then(|| solver.counts())
+    }
+
+    /// Makes the hierarchy of the secants of a configuration, with the iterations that it has served.
+    pub(super) fn make_hierarchy_again(
+        &mut self,
+        configuration: &Configuration,
+        iterations: [usize; 2],
+    ) {
+        let mut kept = self.take_iterating();
+        kept.solver = None;
+        let made = self.prepare(&mut kept, configuration, Iteration::Secant);
+        if let (Ok(()), Some(solver)) = (made, &mut kept.solver) {
+            solver.go_on_counting(iterations);
+        }
+        self.iterating = Some(kept);
     }
 
     /// Gives the solver the matrix of a configuration, if it has not got it.
@@ -92,6 +132,7 @@ impl System<'_> {
                 solver.take(system, &kept.units).map(|()| solver)
             }
             None => {
+                kept.made_for = fingerprint;
                 let system = self.block_system(&kept.order, configuration, iteration);
                 IterativeSolver::new(system, &self.rigid_modes(&kept.order), &kept.units)
             }

@@ -1,5 +1,7 @@
 //! The linear systems: assembly of the stiffness, choice of the solver.
 
+use std::sync::Arc;
+
 use super::Iteration;
 use super::Load;
 use super::configuration::{Configuration, Progress};
@@ -9,7 +11,7 @@ use crate::ids::{Id, PerBody};
 use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
 
 /// From this many unknowns on, a factor is kept until the iteration drops it.
-const LARGE: usize = 10_000;
+pub(super) const LARGE: usize = 10_000;
 
 impl System<'_> {
     /// One linear solve: the step that the iteration matrix answers the unbalanced loads with.
@@ -127,12 +129,16 @@ impl System<'_> {
         let lagging = self.unknowns() >= LARGE && self.factored.is_some() && proximal == 0.0;
         if !lagging {
             let values = self.values(configuration, iteration, proximal, lower);
-            if self.factored.as_ref().is_none_or(|(old, _)| *old != values) {
+            if self
+                .factored
+                .as_ref()
+                .is_none_or(|(old, _)| **old != values)
+            {
                 let solver = self.symmetric.as_mut().ok_or(Singular)?;
                 // A factorisation that fails leaves no factor behind.
                 self.factored = None;
                 let inertia = solver.factorise(&lower.pattern, &values)?;
-                self.factored = Some((values, inertia));
+                self.factored = Some((Arc::new(values), inertia));
             }
         }
         progress.held_pivots = self
@@ -185,6 +191,26 @@ impl System<'_> {
         proximal: f64,
         sparsity: &Sparsity,
     ) -> Vec<f64> {
+        let mut values = self.values_without(configuration, iteration, sparsity, &self.set_aside);
+        if proximal > 0.0 {
+            let spring = proximal * closed_stiffness(configuration);
+            for (body, numbers) in self.numbers.iter().enumerate() {
+                for number in numbers.iter().flatten().filter(|_| !self.set_aside[body]) {
+                    values[sparsity.pattern.diagonal(*number as usize)] += spring;
+                }
+            }
+        }
+        values
+    }
+
+    /// The stiffness without the bodies that are set aside, for which 1 stands on the diagonal.
+    pub(super) fn values_without(
+        &self,
+        configuration: &Configuration,
+        iteration: Iteration,
+        sparsity: &Sparsity,
+        set_aside: &[bool],
+    ) -> Vec<f64> {
         let mut values = vec![0.0; sparsity.pattern.row.len()];
         for (contact, (frame, bond)) in self
             .frames
@@ -192,7 +218,7 @@ impl System<'_> {
             .zip(configuration.bonds.values())
             .enumerate()
         {
-            if bond.is_active() && !self.set_aside[frame.first.index()] {
+            if bond.is_active() && !set_aside[frame.first.index()] {
                 let k = self.stiffness_of(bond, iteration);
                 sparsity.add(
                     &mut values,
@@ -203,15 +229,9 @@ impl System<'_> {
                 );
             }
         }
-        let spring = proximal * closed_stiffness(configuration);
         for (body, numbers) in self.numbers.iter().enumerate() {
-            for number in numbers.iter().flatten() {
-                let diagonal = sparsity.pattern.diagonal(*number as usize);
-                if self.set_aside[body] {
-                    values[diagonal] = 1.0;
-                } else if proximal > 0.0 {
-                    values[diagonal] += spring;
-                }
+            for number in numbers.iter().flatten().filter(|_| set_aside[body]) {
+                values[sparsity.pattern.diagonal(*number as usize)] = 1.0;
             }
         }
         values

@@ -1,15 +1,18 @@
 //! The load path: an iterator of equilibria.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use super::advance::{self, Point, Way};
+use super::boundary::{Boundary, Last};
 use super::control::{PathControl, Steered};
-use super::event_driven::EventDriven;
+use super::event_driven::{self, EventDriven, Unfinished};
 use super::{Breakage, Program, Stage};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
-use crate::equilibrium::system::System;
+use crate::equilibrium::system::{System, is_set};
 use crate::equilibrium::{
     Equilibrium, Iteration, Settings, SolveError, Stability, State, second_order_work,
 };
@@ -17,6 +20,17 @@ use crate::ids::PerProperty;
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
 pub(super) const COLLAPSE: f64 = 1e-4;
+
+/// Where a load path comes to.
+#[derive(Clone, Debug)]
+pub enum Station {
+    /// The end of a load step.
+    Equilibrium(Box<Equilibrium>),
+    /// An event within a load step, with more of it to come.
+    Event,
+    /// Wherever it was when it was told to stop.
+    Stopped,
+}
 
 /// The equilibria of a program, one load step after the other.
 ///
@@ -26,7 +40,9 @@ pub struct LoadPath<'a> {
     pub(super) system: System<'a>,
     pub(super) program: &'a Program,
     pub(super) breakage: Breakage,
-    event_driven: EventDriven,
+    pub(super) event_driven: EventDriven,
+    /// The event-driven load step under way.
+    pub(super) unfinished: Option<Unfinished>,
     pub(super) point: Point,
     /// Stage and place of the next load step in it.
     pub(super) next: (usize, usize),
@@ -35,11 +51,14 @@ pub struct LoadPath<'a> {
     /// No load step is left: an error, or separated.
     pub(super) ended: bool,
     pub(super) steered: Steered,
+    pub(super) last: Last,
+    /// Where the path stood before the present attempt, which may be stopped.
+    pub(super) kept: Option<Box<Boundary>>,
 }
 
 /// Factors at the two ends of a load step.
-#[derive(Clone)]
-pub(super) struct LoadStep {
+#[derive(Clone, Debug, Default)]
+pub struct LoadStep {
     /// Index of the stage.
     pub stage: usize,
     /// Factor of each action at the start.
@@ -105,12 +124,15 @@ impl<'a> LoadPath<'a> {
             program,
             breakage,
             event_driven: EventDriven::default(),
+            unfinished: None,
             point,
             next: (0, 0),
             step: 0,
             waiting: VecDeque::new(),
             ended: false,
             steered: Steered::default(),
+            last: Last::default(),
+            kept: None,
         };
         let way = Way {
             events: advance::first_events(&path.point),
@@ -126,6 +148,75 @@ impl<'a> LoadPath<'a> {
     pub fn steered_by(mut self, control: PathControl) -> Self {
         self.steered = Steered::new(control, &self.point.configuration);
         self
+    }
+
+    /// The same path, which stops soon after `stop` is set.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: Arc<AtomicBool>) -> Self {
+        self.system.stop = Some(stop);
+        self
+    }
+
+    /// Goes on to the next station; none after the last. Without `stopped_by` it never stops.
+    ///
+    /// # Errors
+    /// Where a load step cannot be finished.
+    pub fn advance(&mut self) -> Option<Result<Station, SolveError>> {
+        if self.waiting.is_empty() && !self.ended {
+            if is_set(self.system.stop.as_ref()) {
+                return Some(Ok(Station::Stopped));
+            }
+            self.keep();
+            if !self.go_on()? && !self.system.stopped {
+                self.forget_kept();
+                return Some(Ok(Station::Event));
+            }
+            if self.system.stopped {
+                self.waiting.clear();
+                self.ended = true;
+                return Some(Ok(Station::Stopped));
+            }
+            self.forget_kept();
+        }
+        let next = self.waiting.pop_front()?;
+        Some(next.map(|equilibrium| Station::Equilibrium(Box::new(equilibrium))))
+    }
+
+    /// Keeps where the path stands, if it may be stopped before it stands elsewhere.
+    fn keep(&mut self) {
+        let configuration = &self.point.configuration;
+        self.system.drop_old_hierarchy(configuration);
+        // From event to event of linear contacts nothing is searched for that could be stopped.
+        let is_walk = self.breakage == Breakage::EventDriven
+            && event_driven::is_linear(&self.system, &self.point);
+        if self.system.stop.is_some() && !is_walk && !self.is_within() {
+            self.kept = Some(Box::new(self.boundary()));
+        }
+    }
+
+    /// Within a load step whose iterates are kept, which are too much to remember, only its start can be gone on from.
+    pub(super) fn is_within(&self) -> bool {
+        self.unfinished.is_some() && self.system.settings.keep_iterates
+    }
+
+    fn forget_kept(&mut self) {
+        if !self.is_within() {
+            self.kept = None;
+        }
+    }
+
+    /// Goes through the next load step; false: to an event in it. None where no load step is left.
+    fn go_on(&mut self) -> Option<bool> {
+        if self.breakage == Breakage::EventDriven {
+            return self.take_events();
+        }
+        let load_step = self.next_load_step()?;
+        if self.steered.is_load_controlled() {
+            self.take(&load_step);
+        } else {
+            self.take_steered(load_step);
+        }
+        Some(true)
     }
 
     /// Number of unknown displacements and rotations.
@@ -185,26 +276,48 @@ impl<'a> LoadPath<'a> {
             let mut equilibrium =
                 self.equilibrium(load_step.stage, load_factor, complete, cuts, way);
             equilibrium.stability = before.and_then(|before| self.stability(&before));
-            self.waiting.push_back(Ok(equilibrium));
+            self.come_to(equilibrium);
         }
         self.end_with(failure, load_factor);
     }
 
-    /// Finishes a load step event by event.
-    fn take_events(&mut self, load_step: &LoadStep) {
-        self.step += 1;
-        let mut way = Way::default();
+    /// Goes on with a load step event by event; whether it is finished.
+    fn take_events(&mut self) -> Option<bool> {
+        let mut unfinished = match self.unfinished.take() {
+            Some(unfinished) => unfinished,
+            None => {
+                let load_step = self.next_load_step()?;
+                self.step += 1;
+                Unfinished::new(load_step)
+            }
+        };
         let (system, point) = (&mut self.system, &mut self.point);
         let reached = self
             .event_driven
-            .advance(system, self.program, point, load_step, &mut way);
+            .advance(system, self.program, point, &mut unfinished);
+        let Some(reached) = reached else {
+            self.unfinished = Some(unfinished);
+            return Some(false);
+        };
+        let Unfinished { load_step, way, .. } = unfinished;
         let complete = reached.failure.is_none();
         if complete || reached.went_on {
             let equilibrium =
                 self.equilibrium(load_step.stage, reached.load_factor, complete, 0, way);
-            self.waiting.push_back(Ok(equilibrium));
+            self.come_to(equilibrium);
         }
         self.end_with(reached.failure, reached.load_factor);
+        Some(true)
+    }
+
+    /// The path has come to an equilibrium.
+    pub(super) fn come_to(&mut self, equilibrium: Equilibrium) {
+        self.last = Last {
+            stage: equilibrium.stage,
+            load_factor: equilibrium.load_factor,
+            is_tested: equilibrium.stability.is_some(),
+        };
+        self.waiting.push_back(Ok(equilibrium));
     }
 
     fn end_with(&mut self, failure: Option<Failure>, load_factor: f64) {
@@ -310,7 +423,7 @@ impl<'a> LoadPath<'a> {
     }
 
     /// The stability of the present point, reached from `before`.
-    fn stability(&self, before: &State) -> Option<Stability> {
+    pub(super) fn stability(&self, before: &State) -> Option<Stability> {
         let configuration = &self.point.configuration;
         let modes = self.system.settings.modes;
         let mut stability = self.system.stability(configuration, modes).ok()?;
@@ -323,16 +436,13 @@ impl Iterator for LoadPath<'_> {
     type Item = Result<Equilibrium, SolveError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.waiting.is_empty() && !self.ended {
-            let load_step = self.next_load_step()?;
-            if self.breakage == Breakage::EventDriven {
-                self.take_events(&load_step);
-            } else if self.steered.is_load_controlled() {
-                self.take(&load_step);
-            } else {
-                self.take_steered(load_step);
+        loop {
+            match self.advance()? {
+                Ok(Station::Equilibrium(equilibrium)) => return Some(Ok(*equilibrium)),
+                Ok(Station::Event) => {}
+                Ok(Station::Stopped) => return None,
+                Err(error) => return Some(Err(error)),
             }
         }
-        self.waiting.pop_front()
     }
 }

@@ -171,6 +171,16 @@ impl<const B: usize> IterativeSolver<B> {
         self.iterations[1]
     }
 
+    /// Iterations of the first solve with this hierarchy and of the last one, by which it wears.
+    pub fn counts(&self) -> [usize; 2] {
+        self.iterations
+    }
+
+    /// Takes the counts of the same hierarchy made before.
+    pub fn go_on_counting(&mut self, counts: [usize; 2]) {
+        self.iterations = counts;
+    }
+
     /// Solves with the matrix until no component of the residual, in its unit, is above `bound`.
     pub fn solve(&mut self, right: &[[f64; B]], bound: f64) -> Solution<B> {
         let scaled = scaled_right(&self.scaling, right);

@@ -9,6 +9,7 @@ mod dissipation;
 mod path;
 
 use crate::equilibrium::configuration::Configuration;
+use crate::equilibrium::memory::{Memory, MemoryError, code, count};
 
 /// What steers the load steps of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,6 +67,10 @@ pub(super) struct Steered {
     counted_to: f64,
 }
 
+const COUNTS: &str = "steered.counts";
+const NUMBERS: &str = "steered.numbers";
+const COMPLIANCE: &str = "steered.compliance";
+
 impl Steered {
     pub(super) fn new(control: PathControl, configuration: &Configuration) -> Self {
         let bonds = configuration.bonds.values().iter();
@@ -87,6 +92,26 @@ impl Steered {
             bounds: [FIRST * mean, LARGEST * mean],
             ..Self::default()
         }
+    }
+
+    /// Writes what is kept.
+    pub(super) fn write(&self, memory: &mut Memory) {
+        let (stage, steps) = self.taken;
+        let by_energy = i64::from(code(self.by_energy));
+        memory.put(COUNTS, vec![by_energy, stage as i64, steps as i64]);
+        memory.put(NUMBERS, vec![self.increment, self.counted_to]);
+        memory.put(COMPLIANCE, self.compliance.into_iter().collect());
+    }
+
+    /// Reads what was kept.
+    pub(super) fn read(&mut self, memory: &Memory) -> Result<(), MemoryError> {
+        let [by_energy, stage, steps] = memory.fixed::<i64, 3>(COUNTS)?;
+        self.by_energy = by_energy != 0;
+        self.taken = (count(COUNTS, stage)?, count(COUNTS, steps)?);
+        [self.increment, self.counted_to] = memory.fixed(NUMBERS)?;
+        let compliance = memory.list::<f64>(COMPLIANCE)?.unwrap_or_default();
+        self.compliance = compliance.first().copied();
+        Ok(())
     }
 
     pub(super) fn is_load_controlled(&self) -> bool {

@@ -8,16 +8,20 @@
 //!
 //! DeJong, Hendriks & Rots (2008); Eliáš, Frantík & Vořechovský (2010) for loads that stay constant.
 
+use std::mem::take;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use super::acting::{self, Acting};
 use super::network::Network;
 use super::outer::{Outer, OuterPlaces};
 use super::spring::Interval;
-use super::{EventDriven, Reached, Run};
+use super::{EventDriven, Reached, Run, Unfinished};
 use crate::contact_law::Mode;
 use crate::equilibrium::Load;
 use crate::equilibrium::configuration::Failure;
-use crate::equilibrium::system::{Imbalance, System};
-use crate::ids::{BodyId, ContactId, PerBody};
+use crate::equilibrium::system::{Imbalance, System, is_set};
+use crate::ids::{BodyId, ContactId, PerBody, PropertyId};
 use crate::loading::Program;
 use crate::loading::advance::{self, Point, Way};
 use crate::loading::ledger::{self, Forces};
@@ -27,18 +31,24 @@ use crate::loading::load_path::LoadStep;
 const ROUNDING: f64 = 1e-13;
 /// A residual above this share of the forces, though solved for, says that the loads move a mechanism.
 const UNBALANCED: f64 = 1e-9;
+/// The walk pauses after so many events.
+const PAUSE_EVERY: usize = 64;
 /// Solves after which a residual is what it is.
 pub const MOST_SOLVES: usize = 3;
 
 /// What is kept from event to event.
 #[derive(Clone, Debug)]
 pub struct Course {
+    /// The load step whose line it is.
+    pub line: LoadStep,
     pub network: Network,
     pub places: OuterPlaces,
     /// Floppy modes held in the factor.
     pub held: usize,
     /// Events since the factor was made.
     pub events: usize,
+    /// Bonds that broke since, with their properties before.
+    pub broken: Vec<(ContactId, PropertyId)>,
     /// Room for the answers to an event.
     pub answers: Vec<[f64; 2]>,
     /// Room for the answer to an event where all is proportional.
@@ -61,6 +71,8 @@ pub struct Walk<'w, 'a> {
     pub outer: Outer,
     /// Whether there is another equilibrium than that before the load step.
     pub went_on: bool,
+    /// Set from outside: pause after the present event.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 /// What comes next.
@@ -69,65 +81,73 @@ enum Next {
     Break(f64, Vec<(ContactId, Mode)>),
 }
 
-/// Takes a load step; `point` becomes the last equilibrium found.
+/// Goes on with a load step; `point` becomes the last equilibrium found. None: it pauses.
 pub fn advance(
     event_driven: &mut EventDriven,
     system: &mut System<'_>,
     program: &Program,
     point: &mut Point,
-    load_step: &LoadStep,
-    way: &mut Way,
-) -> Reached {
+    unfinished: &mut Unfinished,
+) -> Option<Reached> {
+    let load_step = &unfinished.load_step;
     let [start, target] = acting::ends(program, load_step);
-    let acting = Acting::new(program, load_step, system.assembly.body_count());
-    let kept = event_driven.course.take();
-    let (course, is_new) = Course::start(system, point, acting, kept);
+    let (begun, kept) = (unfinished.x.is_some(), event_driven.course.take());
+    let (course, is_new) = match kept {
+        Some(course) if begun => (course, false),
+        kept => Course::start(system, program, point, load_step, kept),
+    };
     let mut walk = Walk {
+        // A search for why there is no equilibrium is not broken off.
+        stop: system.stop.take(),
         system,
         program,
         point,
-        way,
+        way: &mut unfinished.way,
         run: &mut event_driven.run,
         course,
-        x: start,
+        x: unfinished.x.unwrap_or(start),
         farthest: start.abs().max(target.abs()),
-        outer: Outer::default(),
-        went_on: false,
+        outer: take(&mut unfinished.outer),
+        went_on: unfinished.went_on,
     };
-    let outcome = walk.begin(is_new).and_then(|()| walk.follow(target));
-    let failure = walk.end(outcome, target, load_step);
+    let begins = if begun { Ok(()) } else { walk.begin(is_new) };
+    let outcome = begins.and_then(|()| walk.follow(target));
+    walk.system.stop = walk.stop.take();
+    if let Ok(false) = outcome {
+        (unfinished.x, unfinished.went_on) = (Some(walk.x), walk.went_on);
+        unfinished.outer = walk.outer;
+        event_driven.course = Some(walk.course);
+        return None;
+    }
+    let failure = walk.end(outcome.map(|_| ()), target, load_step);
     let reached = Reached {
         load_factor: walk.load_factor(),
         went_on: walk.went_on,
         failure,
     };
     event_driven.course = Some(walk.course);
-    reached
+    Some(reached)
 }
 
 impl Course {
     /// The course of a line: the kept one where it is on the same. True: it has still to be brought into balance.
     fn start(
         system: &System<'_>,
+        program: &Program,
         point: &Point,
-        acting: Acting,
+        load_step: &LoadStep,
         kept: Option<Self>,
     ) -> (Self, bool) {
         let configuration = &point.configuration;
+        let acting = Acting::new(program, load_step, system.assembly.body_count());
         let mut course = match kept {
             Some(course) if course.network.acting == acting => return (course, false),
             Some(mut course) => {
                 course.network.acting = acting;
+                course.line = load_step.clone();
                 course
             }
-            None => Self {
-                network: Network::new(system, configuration, acting),
-                places: OuterPlaces::default(),
-                held: 0,
-                events: usize::MAX,
-                answers: Vec::new(),
-                answer: Vec::new(),
-            },
+            None => Self::of(Network::new(system, configuration, acting), load_step),
         };
         course.places = OuterPlaces::new(system, &course.network);
         let bonds = configuration.bonds.values();
@@ -136,6 +156,20 @@ impl Course {
                 .iter()
                 .all(|bond| !bond.broken || bond.property.is_none());
         (course, true)
+    }
+
+    /// A network that has no factor yet.
+    pub fn of(network: Network, load_step: &LoadStep) -> Self {
+        Self {
+            line: load_step.clone(),
+            network,
+            places: OuterPlaces::default(),
+            held: 0,
+            events: usize::MAX,
+            broken: Vec::new(),
+            answers: Vec::new(),
+            answer: Vec::new(),
+        }
     }
 }
 
@@ -161,21 +195,30 @@ impl Walk<'_, '_> {
         Ok(())
     }
 
-    /// From event to event to the end of the load step.
-    fn follow(&mut self, target: f64) -> Result<(), Failure> {
-        loop {
+    /// From event to event to the end of the load step; false: to a pause.
+    fn follow(&mut self, target: f64) -> Result<bool, Failure> {
+        for events in 1.. {
             match self.next(target) {
                 Next::Arrive => {
                     self.go(target);
                     self.run.reach(self.run.direction * target);
-                    return Ok(());
+                    return Ok(true);
                 }
                 Next::Break(x, contacts) => {
                     self.go(x);
                     self.break_bonds(&contacts)?;
                 }
             }
+            if self.pauses(events) {
+                return Ok(false);
+            }
         }
+        Ok(false)
+    }
+
+    /// Iterates are too much to remember in a pause.
+    fn pauses(&self, events: usize) -> bool {
+        (events >= PAUSE_EVERY || is_set(self.stop.as_ref())) && !self.system.settings.keep_iterates
     }
 
     fn next(&self, target: f64) -> Next {
@@ -235,8 +278,8 @@ impl Walk<'_, '_> {
         self.course.network.acting.load_factor(self.x)
     }
 
-    /// Leaves out what nothing holds and nothing on this line loads.
-    pub fn leave_out(&mut self) {
+    /// Leaves out what nothing holds and nothing on this line loads; answers the loose pieces of more than one body.
+    pub fn leave_out(&mut self) -> Vec<Vec<BodyId>> {
         let acting = &self.course.network.acting;
         let ever = acting.loads.iter().map(|[constant, rate]| {
             let mut sum = constant.magnitude();
@@ -245,13 +288,14 @@ impl Walk<'_, '_> {
         });
         let ever: PerBody<Load> = ever.collect();
         let bonds = &self.point.configuration.bonds;
-        self.system.leave_out_loose_pieces(bonds, &ever);
+        self.system.leave_out_loose_pieces(bonds, &ever)
     }
 
     /// A factor of the bonds as they are.
     pub fn factorise(&mut self) -> bool {
         let factor = self.system.factorise_bonds(&self.point.configuration);
         self.course.events = 0;
+        self.course.broken.clear();
         self.course.held = factor.as_ref().map_or(0, |held| *held);
         self.way.progress.held_pivots = self.course.held;
         factor.is_ok()

@@ -8,6 +8,7 @@ mod acting;
 mod bracket;
 mod breaking;
 mod linear;
+mod memory;
 mod network;
 mod outer;
 mod rooted;
@@ -16,6 +17,7 @@ mod spring;
 use std::iter::successors;
 
 use self::linear::Course;
+use self::outer::Outer;
 use super::Program;
 use super::advance::{Point, Way};
 use super::load_path::LoadStep;
@@ -27,7 +29,33 @@ use crate::ids::PerProperty;
 #[derive(Debug, Default)]
 pub struct EventDriven {
     course: Option<Course>,
-    run: Run,
+    /// The run of factors.
+    pub run: Run,
+}
+
+/// A load step under way.
+#[derive(Clone, Debug, Default)]
+pub struct Unfinished {
+    /// Its two ends.
+    pub load_step: LoadStep,
+    /// What has happened in it.
+    pub way: Way,
+    /// The present factor; none: not yet begun.
+    x: Option<f64>,
+    /// Whether there is another equilibrium than that before the load step.
+    went_on: bool,
+    /// What acts at the present factor.
+    outer: Outer,
+}
+
+impl Unfinished {
+    /// A load step that is still to be begun.
+    pub fn new(load_step: LoadStep) -> Self {
+        Self {
+            load_step,
+            ..Self::default()
+        }
+    }
 }
 
 /// How far a load step came.
@@ -43,7 +71,7 @@ pub struct Reached {
 
 /// A part of a stage in which factors do not turn. Factors count in the direction of loading.
 #[derive(Clone, Copy, Debug, Default)]
-struct Run {
+pub struct Run {
     stage: usize,
     /// 1 where factors rise, −1 where they fall.
     direction: f64,
@@ -98,28 +126,30 @@ impl Run {
 }
 
 impl EventDriven {
-    /// Takes a load step; `point` becomes the last equilibrium found.
+    /// Goes on with a load step; `point` becomes the last equilibrium found. None: it pauses after an event.
     pub fn advance(
         &mut self,
         system: &mut System<'_>,
         program: &Program,
         point: &mut Point,
-        load_step: &LoadStep,
-        way: &mut Way,
-    ) -> Reached {
-        let ends = acting::ends(program, load_step);
-        let common = acting::is_common(program, load_step);
-        self.run.turn(load_step.stage, common, ends);
+        unfinished: &mut Unfinished,
+    ) -> Option<Reached> {
+        if unfinished.x.is_none() {
+            let load_step = &unfinished.load_step;
+            let ends = acting::ends(program, load_step);
+            let common = acting::is_common(program, load_step);
+            self.run.turn(load_step.stage, common, ends);
+        }
         if is_linear(system, point) {
-            linear::advance(self, system, program, point, load_step, way)
+            linear::advance(self, system, program, point, unfinished)
         } else {
-            rooted::advance(self, system, program, point, load_step, way)
+            rooted::advance(self, system, program, point, unfinished)
         }
     }
 }
 
 /// Whether every contact is linear, and whatever it may break into.
-fn is_linear(system: &System<'_>, point: &Point) -> bool {
+pub fn is_linear(system: &System<'_>, point: &Point) -> bool {
     let properties = system.properties;
     let mut linear = PerProperty::filled(false, properties.len());
     for (property, linear) in properties.ids().zip(linear.values_mut()) {

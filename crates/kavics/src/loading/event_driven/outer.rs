@@ -2,15 +2,15 @@
 
 use super::network::Network;
 use crate::equilibrium::system::System;
-use crate::equilibrium::{Displacement, Load};
+use crate::equilibrium::{Displacement, Drive, Load};
 use crate::ids::{BodyId, Id};
 
 /// Loads and reactions with the displacements on which they work.
 #[derive(Clone, Debug, Default)]
 pub struct Outer {
-    loads: Vec<(Load, Displacement)>,
+    pub(super) loads: Vec<(Load, Displacement)>,
     /// Reaction and value of each moved freedom.
-    moved: Vec<[f64; 2]>,
+    pub(super) moved: Vec<[f64; 2]>,
 }
 
 /// Where something acts from outside.
@@ -40,6 +40,14 @@ impl Outer {
 }
 
 impl OuterPlaces {
+    /// How far what drives the load path has gone where `outer` acts.
+    pub fn drive(&self, network: &Network, outer: &Outer, x: f64) -> Option<Drive> {
+        let loaded = self.loaded.iter().zip(&outer.loads);
+        let displacements = loaded.map(|(&body, (_, u))| (BodyId::from_index(body), *u));
+        let reactions = outer.moved.iter().map(|[reaction, _]| *reaction);
+        network.acting.drive(x, displacements, reactions)
+    }
+
     /// Where a network is loaded and moved.
     pub fn new(system: &System<'_>, network: &Network) -> Self {
         let acting = &network.acting;

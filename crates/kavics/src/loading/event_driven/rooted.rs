@@ -7,12 +7,12 @@
 
 use super::acting::{self, Acting};
 use super::bracket::Bracket;
-use super::{EventDriven, Reached, Run};
-use crate::equilibrium::Iteration;
+use super::{EventDriven, Reached, Run, Unfinished};
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
+use crate::equilibrium::{Drive, EventKind, Iteration};
 use crate::loading::advance::{self, Break, Point, Way};
-use crate::loading::load_path::{COLLAPSE, LoadStep};
+use crate::loading::load_path::COLLAPSE;
 use crate::loading::{Breakage, Program};
 
 /// A root is known to this share of the factor.
@@ -43,55 +43,58 @@ struct Trial {
     excess: f64,
 }
 
-/// Takes a load step; `point` becomes the last equilibrium found.
+/// Goes on with a load step to the next event or its end; `point` becomes the last equilibrium found.
 pub fn advance(
     event_driven: &mut EventDriven,
     system: &mut System<'_>,
     program: &Program,
     point: &mut Point,
-    load_step: &LoadStep,
-    way: &mut Way,
-) -> Reached {
+    unfinished: &mut Unfinished,
+) -> Option<Reached> {
+    let load_step = &unfinished.load_step;
     let [start, target] = acting::ends(program, load_step);
     let mut search = Search {
         acting: Acting::new(program, load_step, system.assembly.body_count()),
         system,
         program,
         point,
-        way,
+        way: &mut unfinished.way,
         run: &mut event_driven.run,
-        x: start,
+        x: unfinished.x.unwrap_or(start),
         scale: start.abs().max(target.abs()),
-        went_on: false,
+        went_on: unfinished.went_on,
     };
-    let failure = search.follow(target).err();
+    let outcome = search.follow(target);
+    if let Ok(false) = outcome {
+        (unfinished.x, unfinished.went_on) = (Some(search.x), search.went_on);
+        return None;
+    }
     if search.x == target {
         search.point.factors.clone_from(&load_step.to);
     }
-    Reached {
+    Some(Reached {
         load_factor: search.acting.load_factor(search.x),
         went_on: search.went_on,
-        failure,
-    }
+        failure: outcome.err(),
+    })
 }
 
 impl Search<'_, '_> {
-    /// From event to event to the end of the load step.
-    fn follow(&mut self, target: f64) -> Result<(), Failure> {
-        loop {
-            let broken = self.over_limit();
-            if !broken.is_empty() {
-                self.break_bonds(&broken)?;
-                if !self.over_limit().is_empty()
-                    && let Some(trial) = self.fall()
-                {
-                    self.accept(trial.x)?;
-                }
-            } else if self.go_on(target)? {
-                self.run.reach(self.run.direction * target);
-                return Ok(());
+    /// To the next event; whether that is the end of the load step.
+    fn follow(&mut self, target: f64) -> Result<bool, Failure> {
+        let broken = self.over_limit();
+        if !broken.is_empty() {
+            self.break_bonds(&broken)?;
+            if !self.over_limit().is_empty()
+                && let Some(trial) = self.fall()
+            {
+                self.accept(trial.x)?;
             }
+        } else if self.go_on(target)? {
+            self.run.reach(self.run.direction * target);
+            return Ok(true);
         }
+        Ok(false)
     }
 
     fn over_limit(&self) -> Vec<Break> {
@@ -218,11 +221,28 @@ impl Search<'_, '_> {
         Ok(())
     }
 
+    fn drive(&self) -> Option<Drive> {
+        let Point {
+            configuration,
+            forces,
+            ..
+        } = &*self.point;
+        let displacements = configuration
+            .displacements
+            .iter()
+            .map(|(body, u)| (body, *u));
+        let moved = self.acting.moved.iter();
+        let reactions =
+            moved.map(|(body, freedom, _)| forces.reactions[*body].components()[freedom.index()]);
+        self.acting.drive(self.x, displacements, reactions)
+    }
+
     /// Breaks bonds together where the factor stands.
     fn break_bonds(&mut self, broken: &[Break]) -> Result<(), Failure> {
         let action = self.acting.at(self.program, self.x);
         let load_factor = self.acting.load_factor(self.x);
         let before = self.way.events.len();
+        let drive = self.drive();
         let next = advance::break_bonds(
             self.system,
             self.point,
@@ -245,6 +265,9 @@ impl Search<'_, '_> {
         let avalanche = self.run.avalanche(self.run.direction * self.x);
         for event in &mut self.way.events[before..] {
             event.avalanche = Some(avalanche);
+            if matches!(event.kind, EventKind::Broke { .. }) {
+                event.drive = drive;
+            }
         }
         self.went_on = true;
         Ok(())

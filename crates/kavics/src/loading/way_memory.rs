@@ -1,0 +1,238 @@
+//! Load steps and what has happened on the way through one, as columns of a memory.
+
+use super::Program;
+use super::advance::Way;
+use super::load_path::LoadStep;
+use super::work::Account;
+use crate::equilibrium::configuration::Progress;
+use crate::equilibrium::configuration_memory::{mode_code, mode_of};
+use crate::equilibrium::memory::{Memory, MemoryError, count};
+use crate::equilibrium::{Breakdown, Drive, Event, EventKind, Warning};
+use crate::ids::{ContactId, GrainId};
+
+impl LoadStep {
+    /// Writes a load step under a name.
+    pub fn write(&self, name: &str, memory: &mut Memory) {
+        memory.put(&format!("{name}.stage"), vec![self.stage as i64]);
+        memory.put(&format!("{name}.from"), self.from.clone());
+        memory.put(&format!("{name}.to"), self.to.clone());
+        let load_factor = format!("{name}.load_factor");
+        memory.put(&load_factor, self.load_factor.to_vec());
+    }
+
+    /// Reads a load step; none where there is none of that name.
+    pub fn read(
+        name: &str,
+        program: &Program,
+        memory: &Memory,
+    ) -> Result<Option<Self>, MemoryError> {
+        let stage_name = format!("{name}.stage");
+        if memory.list::<i64>(&stage_name)?.is_none() {
+            return Ok(None);
+        }
+        let [stage] = memory.fixed::<i64, 1>(&stage_name)?;
+        let stage = count(&stage_name, stage)?;
+        if stage >= program.stages.len() {
+            return Err(MemoryError::unfit(&stage_name));
+        }
+        let factors = |end: &str| {
+            let name = format!("{name}.{end}");
+            let column = memory.column::<f64>(&name, program.actions.len())?;
+            Ok(column.into_owned())
+        };
+        Ok(Some(Self {
+            stage,
+            from: factors("from")?,
+            to: factors("to")?,
+            load_factor: memory.fixed(&format!("{name}.load_factor"))?,
+        }))
+    }
+}
+
+const COUNTS: &str = "way.counts";
+const NUMBERS: &str = "way.numbers";
+const EVENT_IDS: &str = "event.ids";
+const EVENT_NUMBERS: &str = "event.numbers";
+const EVENT_KINDS: &str = "event.kinds";
+const WARNINGS: &str = "way.warnings";
+
+impl Way {
+    /// Writes what has happened, iterates apart.
+    pub fn write(&self, memory: &mut Memory) {
+        let (progress, account) = (&self.progress, self.account);
+        let counts = [
+            progress.iterations,
+            progress.held_pivots,
+            account.iterations,
+        ];
+        memory.put(COUNTS, counts.map(|n| n as i64).to_vec());
+        let numbers = [
+            progress.residual,
+            account.scale,
+            account.error,
+            self.softened,
+        ];
+        memory.put(NUMBERS, numbers.to_vec());
+        let events = self.events.iter();
+        memory.put(EVENT_IDS, events.clone().flat_map(event_ids).collect());
+        memory.put(
+            EVENT_NUMBERS,
+            events.clone().flat_map(event_numbers).collect(),
+        );
+        memory.put(EVENT_KINDS, events.flat_map(event_kind).collect());
+        let warnings = self.warnings.iter();
+        memory.put(WARNINGS, warnings.flat_map(|w| w.numbers()).collect());
+    }
+
+    /// Reads what has happened.
+    pub fn read(memory: &Memory) -> Result<Self, MemoryError> {
+        let [iterations, held_pivots, for_work] = memory.fixed::<i64, 3>(COUNTS)?;
+        let [residual, scale, error, softened] = memory.fixed(NUMBERS)?;
+        let warnings = memory.list::<f64>(WARNINGS)?.unwrap_or_default();
+        let warnings = warnings.as_chunks::<2>().0.iter();
+        Ok(Self {
+            events: events(memory)?,
+            warnings: warnings.filter_map(|w| Warning::of_numbers(*w)).collect(),
+            progress: Progress {
+                iterations: count(COUNTS, iterations)?,
+                residual,
+                held_pivots: count(COUNTS, held_pivots)?,
+                iterates: Vec::new(),
+            },
+            account: Account {
+                iterations: count(COUNTS, for_work)?,
+                scale,
+                error,
+            },
+            softened,
+        })
+    }
+}
+
+/// Iteration, contact or grain, avalanche.
+fn event_ids(event: &Event) -> [i64; 3] {
+    let id = match event.kind {
+        EventKind::Broke { contact, .. }
+        | EventKind::Opened(contact)
+        | EventKind::Closed(contact)
+        | EventKind::Slid(contact)
+        | EventKind::Stuck(contact) => contact.0,
+        EventKind::SetAside(grain) | EventKind::TakenBack(grain) => grain.0,
+    };
+    let avalanche = event.avalanche.map_or(-1, |number| number as i64);
+    [event.iteration as i64, i64::from(id), avalanche]
+}
+
+/// Load factor, energies, drive; the last not a number where there is none.
+fn event_numbers(event: &Event) -> [f64; 5] {
+    let [displacement, force] = event
+        .drive
+        .map_or([f64::NAN; 2], |drive| [drive.displacement, drive.force]);
+    let [fracture, release] = match event.kind {
+        EventKind::Broke {
+            fracture_energy,
+            release_energy,
+            ..
+        } => [fracture_energy, release_energy],
+        _ => [0.0; 2],
+    };
+    [event.load_factor, fracture, release, displacement, force]
+}
+
+/// Kind and mode.
+fn event_kind(event: &Event) -> [u8; 2] {
+    match event.kind {
+        EventKind::Broke { mode, .. } => [0, mode_code(mode)],
+        EventKind::Opened(_) => [1, 0],
+        EventKind::Closed(_) => [2, 0],
+        EventKind::Slid(_) => [3, 0],
+        EventKind::Stuck(_) => [4, 0],
+        EventKind::SetAside(_) => [5, 0],
+        EventKind::TakenBack(_) => [6, 0],
+    }
+}
+
+fn events(memory: &Memory) -> Result<Vec<Event>, MemoryError> {
+    let kinds = memory.list::<u8>(EVENT_KINDS)?.unwrap_or_default();
+    let (kinds, _) = kinds.as_chunks::<2>();
+    let ids = memory.column::<i64>(EVENT_IDS, 3 * kinds.len())?;
+    let numbers = memory.column::<f64>(EVENT_NUMBERS, 5 * kinds.len())?;
+    let rows = kinds.iter().zip(ids.as_chunks::<3>().0);
+    rows.zip(numbers.as_chunks::<5>().0)
+        .map(|((kind, ids), numbers)| event(*kind, *ids, *numbers))
+        .collect()
+}
+
+fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 5]) -> Result<Event, MemoryError> {
+    let unfit = || MemoryError::unfit(EVENT_KINDS);
+    let id = u32::try_from(ids[1]).map_err(|_| unfit())?;
+    let (contact, grain) = (ContactId(id), GrainId(id));
+    let [
+        load_factor,
+        fracture_energy,
+        release_energy,
+        displacement,
+        force,
+    ] = numbers;
+    Ok(Event {
+        iteration: count(EVENT_IDS, ids[0])?,
+        load_factor,
+        kind: match kind[0] {
+            0 => EventKind::Broke {
+                contact,
+                mode: mode_of(kind[1]).ok_or_else(unfit)?,
+                fracture_energy,
+                release_energy,
+            },
+            1 => EventKind::Opened(contact),
+            2 => EventKind::Closed(contact),
+            3 => EventKind::Slid(contact),
+            4 => EventKind::Stuck(contact),
+            5 => EventKind::SetAside(grain),
+            6 => EventKind::TakenBack(grain),
+            _ => return Err(unfit()),
+        },
+        avalanche: usize::try_from(ids[2]).ok(),
+        drive: (!displacement.is_nan()).then_some(Drive {
+            displacement,
+            force,
+        }),
+    })
+}
+
+impl Warning {
+    /// The warning as its kind and its size.
+    pub fn numbers(&self) -> [f64; 2] {
+        match self {
+            Self::RegularisedPivots { count } => [0.0, *count as f64],
+            Self::ShearFloor { contacts } => [1.0, *contacts as f64],
+            Self::SolvedDirectly { breakdown } => match breakdown {
+                Breakdown::NotPositive => [2.0, 0.0],
+                Breakdown::Stagnated => [2.0, 1.0],
+            },
+            Self::SecondOrderWork { contacts } => [3.0, *contacts as f64],
+            Self::WorkError { relative } => [4.0, *relative],
+            Self::Separated => [5.0, 0.0],
+        }
+    }
+
+    /// The warning of a kind and a size; none where no warning is of that kind.
+    pub fn of_numbers([kind, size]: [f64; 2]) -> Option<Self> {
+        let count = size as usize;
+        Some(match kind as i64 {
+            0 => Self::RegularisedPivots { count },
+            1 => Self::ShearFloor { contacts: count },
+            2 => Self::SolvedDirectly {
+                breakdown: if count == 0 {
+                    Breakdown::NotPositive
+                } else {
+                    Breakdown::Stagnated
+                },
+            },
+            3 => Self::SecondOrderWork { contacts: count },
+            4 => Self::WorkError { relative: size },
+            5 => Self::Separated,
+            _ => return None,
+        })
+    }
+}
