@@ -8,6 +8,7 @@ use clap_complete::Shell;
 use kavics_report::StepChoice;
 
 use crate::draw_arguments::DrawArguments;
+use crate::export::ExportArguments;
 
 const STATUS: &str = "\
 Exit status:
@@ -44,6 +45,8 @@ pub enum Task {
     View(ViewArguments),
     /// Draw the assembly at a load step, or curves, for a paper
     Draw(DrawArguments),
+    /// Write results for other programs
+    Export(ExportArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -161,6 +164,7 @@ const TASKS: &[&str] = &[
     #[cfg(feature = "view")]
     "view",
     "draw",
+    "export",
     "schema",
     "completions",
     "man",

@@ -5,6 +5,7 @@ mod check;
 mod compared;
 mod draw;
 mod draw_arguments;
+mod export;
 mod failure;
 mod measure;
 mod origins;
@@ -50,6 +51,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         #[cfg(feature = "view")]
         Task::View(arguments) => view::view(&arguments),
         Task::Draw(arguments) => draw::draw(&arguments),
+        Task::Export(arguments) => export::export(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

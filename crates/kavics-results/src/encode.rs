@@ -145,7 +145,10 @@ pub fn publish(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
 }
 
 /// The same for a file that `write` writes.
-fn publish_by(
+///
+/// # Errors
+/// Those of `write`; a file that cannot be written.
+pub fn publish_by(
     path: &Path,
     write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ResultsError>,
 ) -> Result<(), ResultsError> {

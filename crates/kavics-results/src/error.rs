@@ -128,12 +128,14 @@ impl ResultsError {
         }
     }
 
-    pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+    /// A file that could not be read.
+    pub fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Unreadable { path, source }
     }
 
-    pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+    /// A file that could not be written.
+    pub fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Unwritable { path, source }
     }

@@ -102,6 +102,18 @@ impl Columns {
         fields.map(|field| field.name().as_str()).collect()
     }
 
+    /// Whether a column holds counts or ids.
+    pub fn is_whole(&self, column: &str) -> bool {
+        let field = self.schema.field_with_name(column);
+        field.is_ok_and(|field| *field.data_type() == DataType::Int64)
+    }
+
+    /// Whether a column holds words.
+    pub fn is_text(&self, column: &str) -> bool {
+        let field = self.schema.field_with_name(column);
+        field.is_ok_and(|field| *field.data_type() == DataType::Utf8)
+    }
+
     /// The dimension of a column, as in the metadata of its field; none where there is no such column.
     pub fn unit(&self, column: &str) -> Option<&str> {
         let field = self.schema.field_with_name(column).ok()?;

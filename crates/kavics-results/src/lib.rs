@@ -33,7 +33,7 @@ pub use actions::ActionRow;
 pub use column::{Column, Unit};
 pub use contacts::ContactRow;
 pub use cracks::CrackRow;
-pub use encode::publish;
+pub use encode::{publish, publish_by};
 pub use error::ResultsError;
 pub use events::EventRow;
 pub use folder::{Columns, ResultsFolder, TableHead};
