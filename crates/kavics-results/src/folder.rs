@@ -57,6 +57,16 @@ impl Columns {
         })
     }
 
+    /// The columns of rows that stand in memory; `path` is for messages.
+    pub(crate) fn of(path: &Path, rows: RecordBatch) -> Self {
+        Self {
+            path: path.to_owned(),
+            schema: rows.schema(),
+            rows: rows.num_rows(),
+            batches: vec![rows],
+        }
+    }
+
     /// The names of the columns in their order.
     pub fn names(&self) -> Vec<&str> {
         let fields = self.schema.fields().iter();
