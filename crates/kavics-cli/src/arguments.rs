@@ -3,8 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+
+use crate::draw_arguments::DrawArguments;
 
 const STATUS: &str = "\
 Exit status:
@@ -37,6 +40,11 @@ pub enum Task {
     Measure(MeasureArguments),
     /// Write the report of finished results: one page, no network
     Report(ReportArguments),
+    /// Show results in the browser: served to this machine only, until Ctrl-C
+    #[cfg(feature = "view")]
+    View(ViewArguments),
+    /// Draw the assembly at a load step, or curves, for a paper
+    Draw(DrawArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -121,6 +129,19 @@ pub struct ReportArguments {
     pub output: Option<PathBuf>,
 }
 
+#[cfg(feature = "view")]
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// Results folder, of a run that is finished or under way
+    pub results: PathBuf,
+    /// Port of 127.0.0.1; any free one when absent
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Only print the address, and open no browser
+    #[arg(long)]
+    pub no_open: bool,
+}
+
 #[derive(Debug, Args)]
 pub struct CompletionsArguments {
     /// Shell
@@ -130,17 +151,20 @@ pub struct CompletionsArguments {
 #[derive(Debug, Args)]
 pub struct ManArguments {
     /// Task whose page is written; that of kavics when absent
-    #[arg(value_name = "COMMAND", value_parser = TASKS)]
+    #[arg(value_name = "COMMAND", value_parser = PossibleValuesParser::new(TASKS))]
     pub task: Option<String>,
 }
 
 /// The tasks that have a manual page.
-const TASKS: [&str; 8] = [
+const TASKS: &[&str] = &[
     "check",
     "pack",
     "run",
     "measure",
     "report",
+    #[cfg(feature = "view")]
+    "view",
+    "draw",
     "schema",
     "completions",
     "man",

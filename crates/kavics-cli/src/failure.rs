@@ -5,8 +5,11 @@ use std::process::ExitCode;
 
 use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
+use kavics_pictures::PictureError;
 use kavics_report::ReportError;
 use kavics_results::ResultsError;
+#[cfg(feature = "view")]
+use kavics_server::{PageError, ServerError};
 use thiserror::Error;
 
 /// Why a task failed.
@@ -66,6 +69,13 @@ pub enum Failure {
     /// The report could not be made.
     #[error("{0}")]
     Report(#[from] ReportError),
+    /// Nothing is served.
+    #[cfg(feature = "view")]
+    #[error("{0}")]
+    Server(#[from] ServerError),
+    /// A picture could not be made.
+    #[error("{0}")]
+    Picture(#[from] PictureError),
     /// Standard output could not be written.
     #[error("stdout: {0}")]
     Output(#[from] std::io::Error),
@@ -78,7 +88,11 @@ impl Failure {
     /// The exit status.
     pub fn status(&self) -> ExitCode {
         let results = match self {
-            Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),
+            Self::Results(error)
+            | Self::Report(ReportError::Results(error))
+            | Self::Picture(PictureError::Results(error)) => Some(error),
+            #[cfg(feature = "view")]
+            Self::Server(ServerError::Page(PageError::Results(error))) => Some(error),
             _ => None,
         };
         if let Some(
@@ -95,15 +109,19 @@ impl Failure {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
+            Self::Picture(error) if error.is_wrong_usage() => 2,
             Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
             Self::NoEquilibrium { .. } | Self::Ended { .. } => 3,
             Self::Stopped { .. } => 75,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)
+            | Self::Picture(_)
             | Self::Output(_)
             | Self::Threads(_)
             | Self::Signals(_) => 4,
+            #[cfg(feature = "view")]
+            Self::Server(_) => 4,
         })
     }
 }

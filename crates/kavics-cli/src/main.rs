@@ -3,6 +3,8 @@
 mod arguments;
 mod check;
 mod compared;
+mod draw;
+mod draw_arguments;
 mod failure;
 mod measure;
 mod origins;
@@ -16,6 +18,8 @@ mod scene_file;
 mod signals;
 mod summary;
 mod texts;
+#[cfg(feature = "view")]
+mod view;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -46,6 +50,9 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        #[cfg(feature = "view")]
+        Task::View(arguments) => view::view(&arguments),
+        Task::Draw(arguments) => draw::draw(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

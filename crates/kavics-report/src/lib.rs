@@ -2,7 +2,6 @@
 //!
 //! In: a results folder. Out: an HTML file without scripts and without network.
 
-mod axis;
 mod bars;
 mod compared_table;
 mod comparison;
@@ -14,7 +13,6 @@ mod fracture_picture;
 mod graph;
 mod modes;
 mod moduli;
-mod number;
 mod packing;
 mod page;
 mod plot;
@@ -26,6 +24,7 @@ use std::path::{Path, PathBuf};
 pub use compared_table::{ComparedError, ComparedTable, MatchedBy};
 pub use comparison::{Compared, ComparedColumn, Comparison};
 pub use error::ReportError;
+use kavics_pictures::{axis, number};
 use kavics_results::ResultsFolder;
 
 /// Writes the report of the results in `folder`, to `report.html` there when `output` says nothing else.

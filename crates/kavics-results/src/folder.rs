@@ -1,12 +1,14 @@
 //! Reading a results folder back, by column name.
 
 use std::fs::{self, File};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
-use arrow_schema::{DataType, SchemaRef};
+use arrow_schema::{DataType, Schema, SchemaRef};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
@@ -32,15 +34,42 @@ impl Columns {
         Self::read_some(path, None)
     }
 
-    /// Reads the named columns only, where there are names.
-    fn read_some(path: &Path, names: Option<&[&str]>) -> Result<Self, ResultsError> {
+    /// Reads the named columns only, where there are names; names that the table lacks are passed over.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds something else.
+    pub fn read_some(path: &Path, names: Option<&[&str]>) -> Result<Self, ResultsError> {
+        Self::read_by(path, names, |builder| builder)
+    }
+
+    /// Reads some rows of the named columns, or of all, as far as the table reaches.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds something else.
+    pub fn read_rows(
+        path: &Path,
+        names: Option<&[&str]>,
+        rows: Range<usize>,
+    ) -> Result<Self, ResultsError> {
+        Self::read_by(path, names, |builder| {
+            builder.with_offset(rows.start).with_limit(rows.len())
+        })
+    }
+
+    fn read_by(
+        path: &Path,
+        names: Option<&[&str]>,
+        choose: impl FnOnce(
+            ParquetRecordBatchReaderBuilder<File>,
+        ) -> ParquetRecordBatchReaderBuilder<File>,
+    ) -> Result<Self, ResultsError> {
         let file = File::open(path).map_err(ResultsError::unreadable(path))?;
         let reader = ParquetRecordBatchReaderBuilder::try_new(file)
             .and_then(|builder| {
                 let mask = names.map_or_else(ProjectionMask::all, |names| {
                     ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
                 });
-                let builder = builder.with_projection(mask);
+                let builder = choose(builder.with_projection(mask));
                 builder.with_batch_size(1 << 16).build()
             })
             .map_err(ResultsError::table(path))?;
@@ -67,10 +96,26 @@ impl Columns {
         }
     }
 
+    /// What the columns are called and hold; their units stand in the metadata of the fields under `unit`.
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// The rows, in their order, in pieces.
+    pub fn batches(&self) -> &[RecordBatch] {
+        &self.batches
+    }
+
     /// The names of the columns in their order.
     pub fn names(&self) -> Vec<&str> {
         let fields = self.schema.fields().iter();
         fields.map(|field| field.name().as_str()).collect()
+    }
+
+    /// The dimension of a column, as in the metadata of its field; none where there is no such column.
+    pub fn unit(&self, column: &str) -> Option<&str> {
+        let field = self.schema.field_with_name(column).ok()?;
+        field.metadata().get("unit").map(String::as_str)
     }
 
     /// Number of rows.
@@ -158,6 +203,31 @@ fn values<A: ArrowPrimitiveType, T: Clone>(
         .collect()
 }
 
+/// What stands at the end of a table's file: its columns, and how many rows there are.
+#[derive(Clone, Debug)]
+pub struct TableHead {
+    /// What the columns are called and hold.
+    pub schema: SchemaRef,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+impl TableHead {
+    /// Reads the head of a Parquet file, and no row.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds something else.
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        let file = File::open(path).map_err(ResultsError::unreadable(path))?;
+        let builder = ParquetRecordBatchReaderBuilder::try_new(file);
+        let builder = builder.map_err(ResultsError::table(path))?;
+        Ok(Self {
+            schema: Arc::clone(builder.schema()),
+            rows: builder.metadata().file_metadata().num_rows() as usize,
+        })
+    }
+}
+
 /// A results folder, read only.
 #[derive(Clone, Debug)]
 pub struct ResultsFolder {
@@ -186,6 +256,11 @@ impl ResultsFolder {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The file of a table, such as `grains`, at a recorded load step, whether it is there or not.
+    pub fn table_path(&self, table: &str, step: usize) -> PathBuf {
+        recorded_path(&self.path, table, step)
     }
 
     /// What ran, and how it ended.

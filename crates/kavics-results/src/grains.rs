@@ -27,6 +27,8 @@ pub struct GrainRow {
     pub stress: Tensor,
     /// `held`, `free`, `rattler` or `loose`.
     pub state: &'static str,
+    /// Whether it is measured.
+    pub in_window: bool,
 }
 
 /// The columns of `grains`, in their order.
@@ -53,5 +55,6 @@ pub(crate) fn grain_columns() -> Vec<Column<GrainRow>> {
         Column::number("stress_yx", Stress, |r: &GrainRow| r.stress.yx),
         Column::number("stress_yy", Stress, |r: &GrainRow| r.stress.yy),
         Column::text("state", |r: &GrainRow| Some(r.state)),
+        Column::integer("window", |r: &GrainRow| i64::from(r.in_window)),
     ]
 }

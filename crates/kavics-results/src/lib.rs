@@ -42,7 +42,7 @@ pub use cracks::CrackRow;
 pub use encode::publish;
 pub use error::ResultsError;
 pub use events::EventRow;
-pub use folder::{Columns, ResultsFolder};
+pub use folder::{Columns, ResultsFolder, TableHead};
 pub use grain_list::{grains_csv, read_grains, write_grains};
 pub use grains::GrainRow;
 pub use modes::ModeRow;

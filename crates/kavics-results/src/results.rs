@@ -59,6 +59,7 @@ pub struct Results<'a> {
     pub(crate) action_rows: Vec<ActionRow>,
     pub(crate) broken: usize,
     held: PerGrain<bool>,
+    in_window: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
     pub(crate) solver_warnings: SolverWarnings,
     pub(crate) log: Log,
@@ -139,6 +140,7 @@ impl<'a> Results<'a> {
             action_rows: Vec::new(),
             broken: 0,
             held: held_grains(scene),
+            in_window: window_grains(scene),
             unrecorded: None,
             solver_warnings: SolverWarnings::default(),
             log: Log::open(),
@@ -203,9 +205,13 @@ impl<'a> Results<'a> {
         let row = StepRow {
             iterations: iterate.iteration,
             residual: iterate.residual,
-            energy: None,
+            energy: iterate.ledger.map(|(_, energy)| energy),
             iteration: Some(iterate.iteration),
             ..self.row_of_state(equilibrium, &iterate.state, measures)
+        };
+        let row = match iterate.ledger {
+            Some((load_factor, _)) => StepRow { load_factor, ..row },
+            None => row,
         };
         self.iterates.push(row);
     }
@@ -369,6 +375,7 @@ impl<'a> Results<'a> {
                 cell_area: assembly.cell_area[id],
                 stress: grain_stress[id],
                 state: self.grain_state(equilibrium, id, contacts[id]),
+                in_window: self.in_window[id],
             }
         };
         range.map(GrainId::from_index).map(row).collect()
@@ -474,6 +481,15 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         warnings: scene.warnings.clone(),
         packing: Some(PackingRecord::of(scene)),
     }
+}
+
+/// Grains that are measured.
+fn window_grains(scene: &Scene) -> PerGrain<bool> {
+    let mut within = PerGrain::filled(false, scene.assembly.grains.len());
+    for &grain in &scene.window {
+        within[grain] = true;
+    }
+    within
 }
 
 /// Grains of which some freedom is held or moved.

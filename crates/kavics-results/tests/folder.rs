@@ -74,7 +74,7 @@ fn tables_of_a_recorded_step_have_the_columns_of_the_contract() {
     assert_eq!(
         names(results.grains(0).unwrap()),
         "step grain x y radius ux uy rotation fx fy moment contacts cell_area stress_xx stress_xy stress_yx \
-         stress_yy state"
+         stress_yy state window"
     );
     assert_eq!(
         names(results.contacts(0).unwrap()),

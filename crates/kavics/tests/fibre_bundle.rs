@@ -145,6 +145,27 @@ fn bursts_of_ten_thousand_fibres_come_as_often_as_the_theory_says() {
 }
 
 #[test]
+#[ignore = "takes some minutes"]
+fn one_bundle_of_a_hundred_thousand_fibres_bursts_as_the_theory_says() {
+    let fibres = 100_000;
+    let breaks = breaks(&bundle(fibres, 1, "event-driven", 1));
+    let sizes = bursts(&breaks);
+    for (size, expected) in (1..).zip(BURSTS) {
+        let found = sizes.iter().filter(|&&s| s == size).count() as f64;
+        let expected = expected * fibres as f64;
+        println!("bursts of {size}: {found}, expected {expected:.0}");
+        // Bursts of one size are rare among all fibres, so that their number scatters by its root at most.
+        assert!(
+            (found - expected).abs() < 4.0 * expected.sqrt(),
+            "bursts of {size}"
+        );
+    }
+    let peak = breaks.load_factor.iter().copied().fold(0.0, f64::max);
+    println!("largest load of a fibre: {peak:.5}, expected 0.25");
+    assert!((peak - 0.25).abs() < 1.0 / (fibres as f64).sqrt());
+}
+
+#[test]
 fn a_bundle_pulled_to_its_end_breaks_every_fibre_once_and_the_load_follows_the_strengths() {
     let fibres = 500;
     let scene = bundle(fibres, 3, "event-driven", 7);

@@ -242,6 +242,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
             release_energy: 0.034,
         },
         avalanche: None,
+        drive: None,
     };
     Equilibrium {
         step,

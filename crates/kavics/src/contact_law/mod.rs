@@ -445,9 +445,8 @@ impl Law {
             Self::Cemented(law) => Dissipation {
                 nonpotential: shear::dissipation(law.reading, ends, k, memory),
                 fracture: k.softening.map_or(0.0, |softening| {
-                    let [from, to] =
-                        ends.map(|end| softening.dissipation(end.displacement, k, memory));
-                    to - from
+                    let [from, to] = ends.map(|end| end.displacement);
+                    softening.dissipation(to, k, &softening.memory_at(from, k, memory))
                 }),
                 friction: 0.0,
             },

@@ -209,6 +209,20 @@ impl Softening {
         ultimate / (ultimate - 1.0) * self.way(v, k, memory).integral(from, to)
     }
 
+    /// The memory of a bond that came to `v` on the way from the remembered equilibrium.
+    pub(super) fn memory_at(
+        &self,
+        v: RelativeDisplacement,
+        k: &Stiffness,
+        memory: &ContactMemory,
+    ) -> ContactMemory {
+        ContactMemory {
+            displacement: v,
+            damage: self.damage(v, k, memory),
+            ..*memory
+        }
+    }
+
     /// What `dissipation` grows by with `v`: ½·v·k·v·∂d/∂κ·∂κ/∂v, `[force]`, `[force]`, `[force·length]`.
     pub fn dissipation_slope(
         &self,

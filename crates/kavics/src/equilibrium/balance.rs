@@ -197,6 +197,7 @@ impl System<'_> {
                 iteration,
                 residual,
                 state: configuration.state(),
+                ledger: None,
             });
         }
     }

@@ -135,6 +135,20 @@ pub struct Event {
     /// Number of the avalanche it belongs to, over the whole run; only with event-driven breakage: events between
     /// two new maxima of the load factor.
     pub avalanche: Option<usize>,
+    /// How far what drives the load path had gone; only of breaks with event-driven breakage where loads alone or moves
+    /// alone drive it, from zero.
+    pub drive: Option<Drive>,
+}
+
+/// How far the loads or moves that drive the load path have gone, and with what force: force times a small change of the
+/// displacement is their work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Of loads: Σ f·u / Σ abs f, f at factor 1, in their direction; of moves: factor times mean abs a, `[length]`; a
+    /// rotation, where they are of these alone.
+    pub displacement: f64,
+    /// Of loads: factor times Σ abs f; of moves: Σ r·a over the mean abs a, r the reactions, `[force]`.
+    pub force: f64,
 }
 
 /// The kinds of events.
@@ -234,6 +248,8 @@ pub struct Iterate {
     pub residual: f64,
     /// Displacements and contacts.
     pub state: State,
+    /// Load factor and energies since the start; only where the state is an equilibrium, after an event.
+    pub ledger: Option<(f64, Energy)>,
 }
 
 /// Why linear systems are no more solved by iteration.

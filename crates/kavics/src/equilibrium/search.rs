@@ -43,7 +43,8 @@ impl System<'_> {
         let mut drifts = 0;
         let mut moves = !action.moved.is_empty();
         loop {
-            self.leave_out_loose_pieces(&configuration.bonds, &action.loads);
+            let loose = self.leave_out_loose_pieces(&configuration.bonds, &action.loads);
+            self.relax(&loose, &mut configuration.displacements);
             let settled = self.settle(configuration, action, moves, progress)?;
             moves = false;
             let groups = self.violations(configuration);

@@ -58,6 +58,16 @@ pub struct Steering<'a> {
 }
 
 impl Steering<'_> {
+    /// The same way, aimed at a share of it.
+    #[must_use]
+    pub fn up_to(self, share: f64) -> Self {
+        let aim = match self.aim {
+            Aim::Dissipation(energy) => Aim::Dissipation(share * energy),
+            Aim::Displacement(work) => Aim::Displacement(share * work),
+        };
+        Self { aim, ..self }
+    }
+
     /// What acts at a share of the load step.
     pub fn action(&self, share: f64) -> Action {
         let mut action = self.start.clone();
@@ -103,7 +113,8 @@ impl System<'_> {
         }
         let mut share = 0.0;
         for _ in 0..MOST_SETS {
-            self.leave_out_loose_pieces(&configuration.bonds, &ever);
+            let loose = self.leave_out_loose_pieces(&configuration.bonds, &ever);
+            self.relax(&loose, &mut configuration.displacements);
             share = self.settle_steered(configuration, steering, share, progress)?;
             let groups = self.violations(configuration);
             let Some(group) = groups.first() else {

@@ -8,6 +8,7 @@ use super::{Breakage, Program};
 use crate::contact_law::{ContactForce, Mode, Phase};
 use crate::equilibrium::bond::Bond;
 use crate::equilibrium::configuration::{Action, Configuration, Failure, Progress};
+use crate::equilibrium::steered::Steering;
 use crate::equilibrium::system::System;
 use crate::equilibrium::{
     ALL_FREEDOMS, Displacement, Energy, Event, EventKind, Freedom, Load, Warning,
@@ -120,12 +121,48 @@ pub fn equilibrium(
 ) -> Result<(Point, Vec<f64>), Failure> {
     let mut configuration = before.configuration.clone();
     system.equilibrate(&mut configuration, action, &mut way.progress)?;
+    let along = Along::Vanishing(vanishing);
+    Ok(settled(
+        system,
+        before,
+        configuration,
+        action,
+        along,
+        load_factor,
+        way,
+    ))
+}
+
+/// What leads from one equilibrium to the next beside the action.
+#[derive(Clone, Copy)]
+pub enum Along<'a> {
+    /// Forces that vanish.
+    Vanishing(&'a [Vanishing]),
+    /// One more equation.
+    Steering(Steering<'a>),
+}
+
+/// The point that a configuration in equilibrium is, reached from `before`; and what each vanishing force sets free.
+pub fn settled(
+    system: &mut System<'_>,
+    before: &Point,
+    configuration: Configuration,
+    action: &Action,
+    along: Along<'_>,
+    load_factor: f64,
+    way: &mut Way,
+) -> (Point, Vec<f64>) {
     let forces = forces(system, &configuration, action);
+    let (vanishing, steering): (&[Vanishing], _) = match along {
+        Along::Vanishing(vanishing) => (vanishing, None),
+        Along::Steering(steering) => (&[], Some(steering)),
+    };
     let stretch = Stretch {
         before: (&before.configuration, &before.forces),
         after: (&configuration, &forces),
         action,
         vanishing,
+        steering,
     };
     let mut energy = before.energy;
     let released = add_work(system, &mut energy, &stretch, &mut way.account);
@@ -135,32 +172,7 @@ pub fn equilibrium(
         energy,
     };
     let point = remembered(system, before, reached, load_factor, way);
-    Ok((point, released))
-}
-
-/// The point that a configuration in equilibrium is, reached from `before` on a straight way.
-pub fn settled(
-    system: &mut System<'_>,
-    before: &Point,
-    configuration: Configuration,
-    action: &Action,
-    load_factor: f64,
-    way: &mut Way,
-) -> Point {
-    let forces = forces(system, &configuration, action);
-    let mut energy = before.energy;
-    ledger::add_way(
-        &mut energy,
-        (&before.configuration, &before.forces),
-        (&configuration, &forces),
-        system.properties,
-    );
-    let reached = Reached {
-        configuration,
-        forces,
-        energy,
-    };
-    remembered(system, before, reached, load_factor, way)
+    (point, released)
 }
 
 /// An equilibrium before its bonds remember it.
@@ -202,6 +214,7 @@ fn remembered(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     way.events.extend(happened);
     for bond in configuration.bonds.values_mut() {
@@ -286,6 +299,7 @@ pub fn break_softened(
                 release_energy: 0.0,
             },
             avalanche: None,
+            drive: None,
         });
     }
 }
@@ -420,6 +434,7 @@ pub(super) fn break_bonds(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     }
     let (next, released) = equilibrium(system, &start, &vanishing, action, load_factor, way)?;
@@ -530,6 +545,7 @@ pub fn first_events(point: &Point) -> Vec<Event> {
             load_factor: 0.0,
             kind: EventKind::SetAside(grain),
             avalanche: None,
+            drive: None,
         })
         .collect()
 }

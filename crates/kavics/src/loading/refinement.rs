@@ -45,17 +45,33 @@ impl Refinement {
         self.parts[0].error
     }
 
-    /// The undivided part that the error asks to divide; none where it is as small as a part may be.
+    /// The undivided part that has the largest share of the error, of those that may still be divided.
+    ///
+    /// What is left of the error of a part is left of that of its halves, each in its measure: where extrapolation does
+    /// well, dividing the halves gains nothing.
     pub fn worst(&self) -> Option<usize> {
-        let mut part = 0;
-        while let Some([first, second]) = self.parts[part].halves {
-            part = if self.parts[second].error > self.parts[first].error {
-                second
-            } else {
-                first
+        let mut shares = vec![self.error(); self.parts.len()];
+        let mut worst: Option<usize> = None;
+        for (place, part) in self.parts.iter().enumerate() {
+            let Some(halves) = part.halves else {
+                let is_worse = worst.is_none_or(|other| shares[place] > shares[other]);
+                if part.halvings < MOST_HALVINGS && is_worse {
+                    worst = Some(place);
+                }
+                continue;
             };
+            let errors = halves.map(|half| self.parts[half].error);
+            for (half, error) in halves.into_iter().zip(errors) {
+                shares[half] =
+                    shares[place] * error / (errors[0] + errors[1]).max(f64::MIN_POSITIVE);
+            }
         }
-        (self.parts[part].halvings < MOST_HALVINGS).then_some(part)
+        worst
+    }
+
+    /// Leaves a part as it is.
+    pub fn give_up(&mut self, part: usize) {
+        self.parts[part].halvings = MOST_HALVINGS;
     }
 
     /// The two ends of a part, as shares of the way.
@@ -225,12 +241,10 @@ mod tests {
             divide(&mut refinement, part);
             part = refinement.parts.len() - 1;
         }
-        refinement.parts[part].error = f64::INFINITY;
-        let mut above = refinement.parts[part].within;
-        while let Some(part) = above {
-            refinement.parts[part].error = f64::INFINITY;
-            above = refinement.parts[part].within;
-        }
-        assert_eq!(refinement.worst(), None);
+        // The other parts are still there to be divided.
+        refinement.parts[part].error = 1e3;
+        let other = refinement.worst().expect("a part");
+        assert_ne!(other, part);
+        assert!(refinement.parts[other].halves.is_none());
     }
 }

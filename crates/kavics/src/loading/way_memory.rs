@@ -7,7 +7,7 @@ use super::work::Account;
 use crate::equilibrium::configuration::Progress;
 use crate::equilibrium::configuration_memory::{mode_code, mode_of};
 use crate::equilibrium::memory::{Memory, MemoryError, count};
-use crate::equilibrium::{Breakdown, Event, EventKind, Warning};
+use crate::equilibrium::{Breakdown, Drive, Event, EventKind, Warning};
 use crate::ids::{ContactId, GrainId};
 
 impl LoadStep {
@@ -123,15 +123,20 @@ fn event_ids(event: &Event) -> [i64; 3] {
     [event.iteration as i64, i64::from(id), avalanche]
 }
 
-fn event_numbers(event: &Event) -> [f64; 3] {
-    match event.kind {
+/// Load factor, energies, drive; the last not a number where there is none.
+fn event_numbers(event: &Event) -> [f64; 5] {
+    let [displacement, force] = event
+        .drive
+        .map_or([f64::NAN; 2], |drive| [drive.displacement, drive.force]);
+    let [fracture, release] = match event.kind {
         EventKind::Broke {
             fracture_energy,
             release_energy,
             ..
-        } => [event.load_factor, fracture_energy, release_energy],
-        _ => [event.load_factor, 0.0, 0.0],
-    }
+        } => [fracture_energy, release_energy],
+        _ => [0.0; 2],
+    };
+    [event.load_factor, fracture, release, displacement, force]
 }
 
 /// Kind and mode.
@@ -151,18 +156,24 @@ fn events(memory: &Memory) -> Result<Vec<Event>, MemoryError> {
     let kinds = memory.list::<u8>(EVENT_KINDS)?.unwrap_or_default();
     let (kinds, _) = kinds.as_chunks::<2>();
     let ids = memory.column::<i64>(EVENT_IDS, 3 * kinds.len())?;
-    let numbers = memory.column::<f64>(EVENT_NUMBERS, 3 * kinds.len())?;
+    let numbers = memory.column::<f64>(EVENT_NUMBERS, 5 * kinds.len())?;
     let rows = kinds.iter().zip(ids.as_chunks::<3>().0);
-    rows.zip(numbers.as_chunks::<3>().0)
+    rows.zip(numbers.as_chunks::<5>().0)
         .map(|((kind, ids), numbers)| event(*kind, *ids, *numbers))
         .collect()
 }
 
-fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 3]) -> Result<Event, MemoryError> {
+fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 5]) -> Result<Event, MemoryError> {
     let unfit = || MemoryError::unfit(EVENT_KINDS);
     let id = u32::try_from(ids[1]).map_err(|_| unfit())?;
     let (contact, grain) = (ContactId(id), GrainId(id));
-    let [load_factor, fracture_energy, release_energy] = numbers;
+    let [
+        load_factor,
+        fracture_energy,
+        release_energy,
+        displacement,
+        force,
+    ] = numbers;
     Ok(Event {
         iteration: count(EVENT_IDS, ids[0])?,
         load_factor,
@@ -182,6 +193,10 @@ fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 3]) -> Result<Event, Memor
             _ => return Err(unfit()),
         },
         avalanche: usize::try_from(ids[2]).ok(),
+        drive: (!displacement.is_nan()).then_some(Drive {
+            displacement,
+            force,
+        }),
     })
 }
 

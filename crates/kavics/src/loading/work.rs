@@ -9,6 +9,7 @@ use super::ledger::{self, Forces};
 use super::refinement::Refinement;
 use crate::contact_law::{ContactForce, ContactInstant, RelativeDisplacement};
 use crate::equilibrium::configuration::{Action, Configuration, Progress};
+use crate::equilibrium::steered::Steering;
 use crate::equilibrium::system::System;
 use crate::equilibrium::{Displacement, Freedom, Load};
 use crate::ids::{BodyId, ContactId, Id, PerBody, PerContact};
@@ -113,6 +114,8 @@ pub struct Stretch<'a> {
     pub action: &'a Action,
     /// What vanishes on it.
     pub vanishing: &'a [Vanishing],
+    /// What steers it, where the load factor does not.
+    pub steering: Option<Steering<'a>>,
 }
 
 /// An equilibrium on the way, without what it shares with the others.
@@ -145,15 +148,18 @@ pub fn along(system: &mut System<'_>, stretch: &Stretch<'_>, account: &mut Accou
         .max(settings.tolerance * gross);
     let first = stretch.work(system, [0.0, 1.0], [&ends[0], &ends[1]]);
     let mut refinement = Refinement::new(ends.into(), first);
-    while refinement.error() > allowed && refinement.samples.len() < MOST_EQUILIBRIA + 2 {
+    let mut tries = 0;
+    while refinement.error() > allowed && tries < MOST_EQUILIBRIA {
         let Some(part) = refinement.worst() else {
             break;
         };
         let [from, to] = refinement.shares(part);
         let middle = 0.5 * (from + to);
         let neighbours = refinement.ends(part);
+        tries += 1;
         let Some(sample) = stretch.sample(system, middle, neighbours, account) else {
-            break;
+            refinement.give_up(part);
+            continue;
         };
         let halves = [
             stretch.work(system, [from, middle], [neighbours[0], &sample]),
@@ -232,11 +238,6 @@ impl Stretch<'_> {
         neighbours: [&Sample; 2],
         account: &mut Account,
     ) -> Option<Sample> {
-        let loads = self.loads(share);
-        let action = Action {
-            loads: self.with_vanishing(system, &loads, share),
-            moved: self.moved(share),
-        };
         let mut configuration = self.start(neighbours);
         let kept = (
             system.set_aside.clone(),
@@ -245,14 +246,37 @@ impl Stretch<'_> {
         );
         system.settings.keep_iterates = false;
         let mut progress = Progress::default();
-        let found = system.equilibrate(&mut configuration, &action, &mut progress);
-        let imbalance = system.imbalance(&configuration, &action.loads);
-        let reactions = reactions(system, &imbalance.unbalanced);
+        let found = self.balance(system, &mut configuration, share, &mut progress);
         (system.set_aside, system.moved_force, system.settings) = kept;
         account.iterations += progress.iterations;
-        found.ok()?;
-        let forces = Forces { loads, reactions };
-        Some(Sample::new(system, &configuration, forces))
+        Some(Sample::new(system, &configuration, found?))
+    }
+
+    /// Brings a configuration into equilibrium at a share of the way; answers what then acts on it.
+    fn balance(
+        &self,
+        system: &mut System<'_>,
+        configuration: &mut Configuration,
+        share: f64,
+        progress: &mut Progress,
+    ) -> Option<Forces> {
+        let (loads, action) = if let Some(steering) = self.steering {
+            let steering = steering.up_to(share);
+            let reached = system.steer(configuration, steering, progress).ok()?;
+            let action = steering.action(reached);
+            (action.loads.clone(), action)
+        } else {
+            let loads = self.loads(share);
+            let action = Action {
+                loads: self.with_vanishing(system, &loads, share),
+                moved: self.moved(share),
+            };
+            system.equilibrate(configuration, &action, progress).ok()?;
+            (loads, action)
+        };
+        let imbalance = system.imbalance(configuration, &action.loads);
+        let reactions = reactions(system, &imbalance.unbalanced);
+        Some(Forces { loads, reactions })
     }
 
     fn loads(&self, share: f64) -> PerBody<Load> {

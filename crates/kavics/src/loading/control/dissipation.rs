@@ -7,7 +7,7 @@ use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::steered::{Aim, Steering};
 use crate::ids::BodyId;
 use crate::loading::LoadPath;
-use crate::loading::advance::{self, Point, Way};
+use crate::loading::advance::{self, Along, Point, Way};
 use crate::loading::load_path::LoadStep;
 
 /// How often a load step is made smaller, and by how much.
@@ -227,7 +227,8 @@ impl LoadPath<'_> {
         };
         let share = system.steer(&mut configuration, steering, &mut way.progress)?;
         let (action, at) = (steering.action(share), load_step.load_factor(share));
-        let here = advance::settled(system, point, configuration, &action, at, way);
+        let along = Along::Steering(steering);
+        let (here, _) = advance::settled(system, point, configuration, &action, along, at, way);
         let mut here = advance::hold(system, here, self.breakage, &action, at, way)?;
         here.factors = load_step.factors(share);
         Ok((here, share))

@@ -4,7 +4,7 @@ use super::Control;
 use crate::assembly::Assembly;
 use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::{Load, SolveError, Warning};
-use crate::loading::advance::{self, Point, Way};
+use crate::loading::advance::{self, Along, Point, Way};
 use crate::loading::load_path::LoadStep;
 use crate::loading::{LoadPath, Program};
 
@@ -158,7 +158,19 @@ impl LoadPath<'_> {
         let at = load_step.load_factor(share);
         let next = system
             .equilibrate(&mut configuration, &action, &mut tried.progress)
-            .map(|()| advance::settled(system, &start, configuration, &action, at, &mut tried))
+            .map(|()| {
+                let along = Along::Vanishing(&[]);
+                advance::settled(
+                    system,
+                    &start,
+                    configuration,
+                    &action,
+                    along,
+                    at,
+                    &mut tried,
+                )
+                .0
+            })
             .and_then(|here| advance::hold(system, here, self.breakage, &action, at, &mut tried));
         let Ok(next) = next else { return false };
         self.point = next;

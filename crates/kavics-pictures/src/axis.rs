@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// An axis, linear or logarithmic.
 #[derive(Clone, Debug)]
-pub(crate) struct Axis {
+pub struct Axis {
     low: f64,
     high: f64,
     logarithmic: bool,
@@ -22,14 +22,16 @@ pub(crate) struct Axis {
 
 /// A mark of an axis.
 #[derive(Clone, Debug)]
-pub(crate) struct Tick {
-    pub(crate) value: f64,
-    pub(crate) label: String,
+pub struct Tick {
+    /// The value.
+    pub value: f64,
+    /// How it is shown.
+    pub label: String,
 }
 
 impl Axis {
     /// The axis over `values`, with about `count` ticks.
-    pub(crate) fn over(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
+    pub fn over(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
         let [mut low, mut high] = extent(values);
         // What is near zero by comparison starts at zero, so that sizes can be compared.
         // So does what is rounding on the other side of it.
@@ -59,7 +61,7 @@ impl Axis {
     }
 
     /// The axis over sizes: logarithmic where they are spread widely.
-    pub(crate) fn over_sizes(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
+    pub fn over_sizes(values: impl Iterator<Item = f64> + Clone, count: f64) -> Self {
         let [low, high] = extent(values);
         if low <= 0.0 || high < WIDE * low {
             return Self::linear(low, high, count);
@@ -86,12 +88,13 @@ impl Axis {
         }
     }
 
-    pub(crate) fn ticks(&self) -> &[Tick] {
+    /// Its marks, rising.
+    pub fn ticks(&self) -> &[Tick] {
         &self.ticks
     }
 
     /// How far along the axis a value is, from 0 to 1.
-    pub(crate) fn share(&self, value: f64) -> f64 {
+    pub fn share(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
@@ -133,8 +136,19 @@ fn round_numbers(factors: &[f64], low: f64, high: f64) -> Vec<f64> {
         .collect()
 }
 
+/// 1, 2 or 5 times a power of ten, at most `value`; for what is not positive 0.
+pub fn round_below(value: f64) -> f64 {
+    if value <= 0.0 || !value.is_finite() {
+        return 0.0;
+    }
+    let power = 10f64.powf(value.log10().floor());
+    let fits = |factor: &f64| factor * power <= value * (1.0 + 1e-9);
+    let factor = [5.0, 2.0, 1.0].into_iter().find(fits).unwrap_or(0.5);
+    factor * power
+}
+
 /// 1, 2 or 5 times a power of ten, at least `rough`.
-pub(crate) fn round_step(rough: f64) -> f64 {
+pub fn round_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let factor = [1.0, 2.0, 5.0]
         .into_iter()
@@ -145,7 +159,7 @@ pub(crate) fn round_step(rough: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Axis, round_step};
+    use super::{Axis, round_below, round_step};
 
     fn values(axis: &Axis) -> Vec<f64> {
         axis.ticks().iter().map(|tick| tick.value).collect()
@@ -157,6 +171,14 @@ mod tests {
         assert_eq!(axis.ticks().len(), 5);
         assert!((axis.high - 0.4).abs() < 1e-12);
         assert!((round_step(0.074) - 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_number_is_rounded_down_to_one_two_or_five() {
+        let rounded = [7.3, 5.0, 4.9, 0.0199, -1.0].map(round_below);
+        for (found, expected) in rounded.into_iter().zip([5.0, 5.0, 2.0, 0.01, 0.0]) {
+            assert!((found - expected).abs() <= 1e-12, "{found} {expected}");
+        }
     }
 
     #[test]

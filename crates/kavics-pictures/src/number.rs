@@ -3,7 +3,7 @@
 const MINUS: char = '\u{2212}';
 
 /// Five significant digits, in plain notation where that is short; an en dash where there is none.
-pub(crate) fn show(value: f64) -> String {
+pub fn show(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -19,7 +19,7 @@ pub(crate) fn show(value: f64) -> String {
 }
 
 /// Three significant digits, for a place of its own.
-pub(crate) fn brief(value: f64) -> String {
+pub fn brief(value: f64) -> String {
     if value != 0.0 && value.is_finite() && !(1e-3..1e6).contains(&value.abs()) {
         return scientific(value, 2).replace('-', &MINUS.to_string());
     }
@@ -48,7 +48,7 @@ fn scientific(value: f64, decimals: usize) -> String {
 }
 
 /// A fixed number of decimals, as in a printed table; what rounds to zero has no sign.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -60,7 +60,7 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A tick of an axis whose ticks are `step` apart.
-pub(crate) fn tick(value: f64, step: f64) -> String {
+pub fn tick(value: f64, step: f64) -> String {
     let largest = value.abs();
     if largest != 0.0 && !(1e-3..1e6).contains(&largest.max(step)) {
         return scientific(value, 2).replace('-', &MINUS.to_string());

@@ -1,0 +1,140 @@
+//! The assembly at a load step, with displacements as large as they are drawn.
+
+use std::collections::HashSet;
+
+use kavics::assembly::{Contact, Grain, Partner};
+use kavics::equilibrium::{ContactState, Displacement, State};
+use kavics::geometry::Vector;
+use kavics::ids::{ContactId, GrainId, Id, SideId};
+use kavics_results::ResultsFolder;
+
+use crate::breaks::{Break, breaks};
+use crate::{Layout, PictureError};
+
+/// What a contact is to a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Standing {
+    /// It can carry a force.
+    Active,
+    /// It is open, and no bond of it has broken.
+    Open,
+    /// It carries nothing since its bond broke.
+    Broken,
+}
+
+/// The assembly at a load step.
+pub(crate) struct Scenery<'a> {
+    pub folder: &'a ResultsFolder,
+    pub layout: &'a Layout,
+    pub step: usize,
+    pub state: State,
+    /// Where the centres of grains are drawn.
+    pub centres: Vec<Vector>,
+    /// The bonds broken so far, in order.
+    pub breaks: Vec<Break>,
+    has_broken: HashSet<usize>,
+    times: f64,
+}
+
+impl<'a> Scenery<'a> {
+    /// The assembly at a recorded load step, displacements so many times as large as they are.
+    pub fn at(
+        folder: &'a ResultsFolder,
+        layout: &'a Layout,
+        step: usize,
+        times: f64,
+    ) -> Result<Self, PictureError> {
+        let state = layout.state(step)?;
+        let breaks = breaks(folder, step)?;
+        let mut scenery = Self {
+            folder,
+            layout,
+            step,
+            state,
+            centres: Vec::new(),
+            has_broken: breaks.iter().map(|bond| bond.contact).collect(),
+            breaks,
+            times,
+        };
+        let grains = layout.assembly.grains.ids();
+        scenery.centres = grains.map(|grain| scenery.centre(grain)).collect();
+        Ok(scenery)
+    }
+
+    pub fn grains(&self) -> &[Grain] {
+        self.layout.assembly.grains.values()
+    }
+
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = (ContactId, &Contact)> {
+        self.layout.assembly.contacts.iter()
+    }
+
+    fn centre(&self, grain: GrainId) -> Vector {
+        self.layout.assembly.grains[grain].centre + self.way(Partner::Grain(grain), None)
+    }
+
+    /// How far a partner has gone as it is drawn; of a side, a point of it.
+    fn way(&self, partner: Partner, at: Option<Vector>) -> Vector {
+        let assembly = &self.layout.assembly;
+        let Displacement { x, y, rotation } = self.state.displacements[assembly.body(partner)];
+        let arm = at.map_or(Vector::default(), |at| {
+            at - assembly.reference_point(partner)
+        });
+        (Vector::new(x, y) + arm.quarter_turn() * rotation) * self.times
+    }
+
+    /// What a contact is.
+    pub fn standing(&self, contact: ContactId) -> Standing {
+        let state = self.state.contacts.values().get(contact.index());
+        match state {
+            Some(state) if state.is_active() => Standing::Active,
+            Some(ContactState { broken: false, .. }) if !self.has_broken(contact) => Standing::Open,
+            _ => Standing::Broken,
+        }
+    }
+
+    /// Whether a bond of a contact has broken.
+    pub fn has_broken(&self, contact: ContactId) -> bool {
+        self.has_broken.contains(&contact.index())
+    }
+
+    /// From centre to centre, or from the centre to the side.
+    pub fn branch(&self, contact: &Contact) -> [Vector; 2] {
+        let end = |partner| match partner {
+            Partner::Grain(grain) => self.centres[grain.index()],
+            Partner::Side(_) => contact.point + self.way(partner, Some(contact.point)),
+        };
+        [end(contact.first), end(contact.second)]
+    }
+
+    /// The dual edge, moved with the mean of its partners.
+    pub fn dual(&self, contact: &Contact, ends: [Vector; 2]) -> [Vector; 2] {
+        let mean = match contact.second {
+            Partner::Grain(_) => {
+                let ways = [contact.first, contact.second].map(|grain| self.way(grain, None));
+                (ways[0] + ways[1]) * 0.5
+            }
+            side @ Partner::Side(_) => self.way(side, Some(contact.point)),
+        };
+        ends.map(|end| end + mean)
+    }
+
+    /// A side of the container, and whether grains can touch it.
+    pub fn sides(&self) -> impl Iterator<Item = ([Vector; 2], bool)> {
+        let sides = self.layout.assembly.sides.iter();
+        sides.map(|(id, side): (SideId, _)| {
+            let ends = [side.start, side.end];
+            let moved = ends.map(|end| end + self.way(Partner::Side(id), Some(end)));
+            (moved, side.present)
+        })
+    }
+
+    /// Mean branch length of the contacts; without any, the mean diameter, `[length]`.
+    pub fn typical_length(&self) -> f64 {
+        let contacts = self.layout.assembly.contacts.values();
+        if contacts.is_empty() {
+            return 2.0 * self.layout.assembly.mean_radius();
+        }
+        contacts.iter().map(|c| c.branch_length).sum::<f64>() / contacts.len() as f64
+    }
+}
