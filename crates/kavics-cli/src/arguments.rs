@@ -1,6 +1,7 @@
 //! What stands behind `kavics` on the command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -15,7 +16,8 @@ Exit status:
   0  done
   2  wrong usage, or a wrong scene
   3  no equilibrium; the results are valid up to the load step named
-  4  a file could not be read or written";
+  4  a file could not be read or written
+  75 stopped by a signal; run again with --resume";
 
 /// More threads than any machine has, and fewer than one can start.
 const MOST_THREADS: usize = 1024;
@@ -99,6 +101,12 @@ pub struct RunArguments {
     /// Replace results that are there already
     #[arg(long)]
     pub force: bool,
+    /// Go on with results that were broken off or stopped, from their last checkpoint
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Least time between two checkpoints in seconds; 0: after every load step
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    pub checkpoint: Duration,
     /// One JSON object per load step on stdout
     #[arg(long)]
     pub json: bool,
@@ -177,6 +185,12 @@ fn load_step(text: &str) -> Result<usize, String> {
             "expected numbers of load steps or \"last\", with commas between".to_owned()
         }),
     }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "expected a number of seconds, not negative".to_owned();
+    let seconds: f64 = text.parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
 }
 
 fn threads(text: &str) -> Result<usize, String> {

@@ -44,6 +44,25 @@ pub enum Failure {
         /// Results folder.
         folder: PathBuf,
     },
+    /// The results to go on with ended without an equilibrium.
+    #[error("{} has ended already: {why}", folder.display())]
+    Ended {
+        /// Results folder.
+        folder: PathBuf,
+        /// Why there is no equilibrium.
+        why: String,
+    },
+    /// The run was told to stop.
+    #[error("stopped after load step {last}; kavics run --resume goes on from the checkpoint in {}", folder.display())]
+    Stopped {
+        /// Last load step of the results.
+        last: usize,
+        /// Results folder.
+        folder: PathBuf,
+    },
+    /// Signals cannot be waited for.
+    #[error("signals: {0}")]
+    Signals(#[from] ctrlc::Error),
     /// A file of the results could not be read or written.
     #[error("{0}")]
     Results(#[from] ResultsError),
@@ -84,6 +103,8 @@ impl Failure {
             | ResultsError::NotOfARun { .. }
             | ResultsError::InUse { .. }
             | ResultsError::OtherScene { .. }
+            | ResultsError::SceneChanged { .. }
+            | ResultsError::OtherAssembly { .. }
             | ResultsError::UnknownEnding { .. },
         ) = results
         {
@@ -95,13 +116,15 @@ impl Failure {
             | Self::Override { .. }
             | Self::Window { .. }
             | Self::Report(ReportError::Viewer(PageError::Unrecorded { .. })) => 2,
-            Self::NoEquilibrium { .. } => 3,
+            Self::NoEquilibrium { .. } | Self::Ended { .. } => 3,
+            Self::Stopped { .. } => 75,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)
             | Self::Picture(_)
             | Self::Output(_)
-            | Self::Threads(_) => 4,
+            | Self::Threads(_)
+            | Self::Signals(_) => 4,
             #[cfg(feature = "view")]
             Self::Server(_) => 4,
         })

@@ -13,8 +13,10 @@ mod overrides;
 mod own_files;
 mod pack;
 mod pack_summary;
+mod resume;
 mod run;
 mod scene_file;
+mod signals;
 mod summary;
 mod texts;
 #[cfg(feature = "view")]
@@ -30,6 +32,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    signals::let_large_files_fail();
     match perform(arguments.task) {
         Ok(()) => ExitCode::SUCCESS,
         // Who stops reading, as head does, has what it wanted.

@@ -2,22 +2,29 @@
 
 use std::io::{self, Write, stdout};
 use std::path::Path;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
+use kavics::loading::{LoadPath, Station};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
-use kavics_results::{Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room};
+use kavics_results::{
+    Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
+    clear_checkpoints,
+};
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
 use crate::scene_file::say;
-use crate::{own_files, scene_file, summary};
+use crate::{own_files, resume, scene_file, signals, summary};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
     let folder = arguments.output.clone().unwrap_or_else(usual);
-    check_room(&folder, arguments.force)?;
+    if !arguments.resume {
+        check_room(&folder, arguments.force)?;
+    }
     let threads = scene_file::start_threads(arguments.threads)?;
     let (mut scene, table) = scene_file::read(&arguments.scene)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
@@ -26,18 +33,37 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         threads,
         replace: arguments.force,
     };
-    let mut results = Results::create(&folder, &scene, options)?;
-    let mut lines = JsonLines::new(arguments.json);
-    let failure = follow(&scene, &mut results, &mut lines)?;
+    let start = if arguments.resume {
+        check_same(&folder, &scene)?;
+        if resume::is_finished(&folder)? {
+            return finished(&folder);
+        }
+        resume::go_on(&scene, &folder, options)?
+    } else {
+        resume::begin(&scene, &folder, options)?
+    };
+    let mut results = start.results;
+    signals::name_checkpoint_in_a_panic(&folder);
+    let mut follower = Follower {
+        scene: &scene,
+        window: Window::new(scene.window.clone(), scene.assembly.grains.len()),
+        results: &mut results,
+        lines: JsonLines::new(arguments.json),
+        apart: arguments.checkpoint,
+    };
+    let path = start.path.stopped_by(signals::stop_flag()?);
+    let ended = follower.follow(path)?;
+    let lines = follower.lines;
+    let (state, failure) = match ended {
+        Ended::Stopped => return stop(results, &folder),
+        Ended::Done => (RunState::Done, None),
+        Ended::NoEquilibrium(error) => (RunState::NoEquilibrium, Some(error)),
+    };
     let lone = table.map(|table| table.unmatched(results.steps()));
     for lone in lone.unwrap_or_default() {
         results.warn(format!("compare.csv: {lone}"));
     }
     let warnings = results.warnings();
-    let state = match failure {
-        None => RunState::Done,
-        Some(_) => RunState::NoEquilibrium,
-    };
     let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
     say(&summary::summary(&steps));
     scene_file::show_warnings(&warnings);
@@ -52,30 +78,77 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
 }
 
-/// Pushes every equilibrium of the load path; answers why it ended early.
-fn follow(
-    scene: &Scene,
-    results: &mut Results<'_>,
-    lines: &mut JsonLines,
-) -> Result<Option<SolveError>, Failure> {
-    let window = Window::new(scene.window.clone(), scene.assembly.grains.len());
-    let bar = progress_bar(scene);
-    for equilibrium in scene.load_path() {
-        let equilibrium = match equilibrium {
-            Ok(equilibrium) => equilibrium,
-            Err(error) => {
-                bar.finish_and_clear();
-                return Ok(Some(error));
+/// How a load path ended.
+enum Ended {
+    Done,
+    NoEquilibrium(SolveError),
+    Stopped,
+}
+
+/// Follows a load path, and writes what it comes to.
+struct Follower<'r, 'a> {
+    scene: &'a Scene,
+    window: Window,
+    results: &'r mut Results<'a>,
+    lines: JsonLines,
+    /// Least time between two checkpoints.
+    apart: Duration,
+}
+
+impl Follower<'_, '_> {
+    /// Pushes every equilibrium of the load path.
+    fn follow(&mut self, mut path: LoadPath<'_>) -> Result<Ended, Failure> {
+        let bar = progress_bar(self.scene);
+        let ended = loop {
+            match path.advance() {
+                None => break Ended::Done,
+                Some(Err(error)) => break Ended::NoEquilibrium(error),
+                Some(Ok(Station::Stopped)) => {
+                    self.checkpoint(&path)?;
+                    break Ended::Stopped;
+                }
+                Some(Ok(Station::Event)) => {}
+                Some(Ok(Station::Equilibrium(equilibrium))) => {
+                    push(self.scene, &self.window, &equilibrium, self.results)?;
+                    bar.set_position(equilibrium.step as u64);
+                    if equilibrium.step > 0 {
+                        self.lines.write(self.results.steps());
+                    }
+                }
+            }
+            if self.results.wants_checkpoint(self.apart) {
+                self.checkpoint(&path)?;
             }
         };
-        push(scene, &window, &equilibrium, results)?;
-        bar.set_position(equilibrium.step as u64);
-        if equilibrium.step > 0 {
-            lines.write(results.steps());
-        }
+        bar.finish_and_clear();
+        Ok(ended)
     }
-    bar.finish_and_clear();
-    Ok(None)
+
+    fn checkpoint(&mut self, path: &LoadPath<'_>) -> Result<(), Failure> {
+        if let Some(memory) = path.memory() {
+            self.results.checkpoint(memory)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ends a run that was told to stop: the tables hold all that was found, and it can go on.
+fn stop(results: Results<'_>, folder: &Path) -> Result<(), Failure> {
+    let steps = results.finish(RunState::Stopped, None)?;
+    Err(Failure::Stopped {
+        last: steps.last().map_or(0, |row| row.step),
+        folder: folder.to_owned(),
+    })
+}
+
+/// Nothing is left to do but what a run that was broken off at its very end may have left out.
+fn finished(folder: &Path) -> Result<(), Failure> {
+    say(&format!("{} is finished\n", folder.display()));
+    clear_checkpoints(folder)?;
+    if folder.join("report.html").is_file() {
+        return Ok(());
+    }
+    finish_report(folder)
 }
 
 fn push(

@@ -98,6 +98,74 @@ pub enum ResultsError {
         /// Rows that the scene makes.
         expected: usize,
     },
+    /// The run to go on with was of another scene.
+    #[error(
+        "{}: the scene has changed since the run began, at line {line} of its scene.toml\n  then: {ran}\n  now:  {now}\n\
+         a run goes on with the scene that it began with; --force begins it anew",
+        folder.display()
+    )]
+    SceneChanged {
+        /// Results folder.
+        folder: PathBuf,
+        /// The first line that differs, from 1.
+        line: usize,
+        /// That line when the run began.
+        ran: String,
+        /// That line now.
+        now: String,
+    },
+    /// The run to go on with had other grains or contacts.
+    #[error(
+        "{}: the scene is the same, but its grains or contacts are not those of the run, which kavics {version} began: \
+         a file that the scene reads has changed, or they are made in another way now; --force begins it anew",
+        folder.display()
+    )]
+    OtherAssembly {
+        /// Results folder.
+        folder: PathBuf,
+        /// The version that began it.
+        version: String,
+    },
+    /// A checkpoint is damaged.
+    #[error("{}: {reason}", path.display())]
+    Damaged {
+        /// The checkpoint.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// No checkpoint can be used.
+    #[error(
+        "{reasons}\n{}: no checkpoint is whole; the tables are as they were, --force begins the run anew",
+        folder.display()
+    )]
+    NoCheckpoint {
+        /// Results folder.
+        folder: PathBuf,
+        /// What is wrong with each.
+        reasons: String,
+    },
+    /// A checkpoint means something that this version does not know.
+    #[error(
+        "{}: a checkpoint of version {found}, which kavics {version} wrote; kavics {} reads version {}",
+        path.display(), env!("CARGO_PKG_VERSION"), crate::CHECKPOINT_VERSION
+    )]
+    CheckpointVersion {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+        /// The version of kavics that wrote it.
+        version: String,
+    },
+    /// A checkpoint does not fit the scene.
+    #[error("{}: the checkpoint cannot be gone on from: {source}", folder.display())]
+    Memory {
+        /// Results folder.
+        folder: PathBuf,
+        /// Why.
+        source: kavics::equilibrium::MemoryError,
+    },
     /// Results lack a table.
     #[error("{} is missing: the results are not whole", path.display())]
     Missing {

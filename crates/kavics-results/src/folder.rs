@@ -86,6 +86,16 @@ impl Columns {
         })
     }
 
+    /// The columns of rows that stand in memory; `path` is for messages.
+    pub(crate) fn of(path: &Path, rows: RecordBatch) -> Self {
+        Self {
+            path: path.to_owned(),
+            schema: rows.schema(),
+            rows: rows.num_rows(),
+            batches: vec![rows],
+        }
+    }
+
     /// What the columns are called and hold; their units stand in the metadata of the fields under `unit`.
     pub fn schema(&self) -> &Schema {
         &self.schema

@@ -27,6 +27,29 @@ impl SolverWarnings {
         }
     }
 
+    /// The warnings as numbers: load step, kind and size.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let list = self.list.iter();
+        list.flat_map(|(warning, steps)| {
+            let [kind, size] = warning.numbers();
+            steps
+                .iter()
+                .flat_map(move |&step| [step as f64, kind, size])
+        })
+        .collect()
+    }
+
+    /// The warnings of such numbers.
+    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
+        let mut warnings = Self::default();
+        for &[step, kind, size] in numbers.as_chunks::<3>().0 {
+            if let Some(warning) = Warning::of_numbers([kind, size]) {
+                warnings.add(step as usize, &warning);
+            }
+        }
+        warnings
+    }
+
     /// The warnings in words, in the order in which they first came.
     pub(crate) fn texts(&self) -> impl Iterator<Item = String> + '_ {
         let warnings = self.list.iter();

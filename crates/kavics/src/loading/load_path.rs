@@ -283,13 +283,12 @@ impl<'a> LoadPath<'a> {
 
     /// Goes on with a load step event by event; whether it is finished.
     fn take_events(&mut self) -> Option<bool> {
-        let mut unfinished = match self.unfinished.take() {
-            Some(unfinished) => unfinished,
-            None => {
-                let load_step = self.next_load_step()?;
-                self.step += 1;
-                Unfinished::new(load_step)
-            }
+        let mut unfinished = if let Some(unfinished) = self.unfinished.take() {
+            unfinished
+        } else {
+            let load_step = self.next_load_step()?;
+            self.step += 1;
+            Unfinished::new(load_step)
         };
         let (system, point) = (&mut self.system, &mut self.point);
         let reached = self

@@ -81,7 +81,7 @@ impl Way {
         );
         memory.put(EVENT_KINDS, events.flat_map(event_kind).collect());
         let warnings = self.warnings.iter();
-        memory.put(WARNINGS, warnings.flat_map(|w| w.numbers()).collect());
+        memory.put(WARNINGS, warnings.flat_map(Warning::numbers).collect());
     }
 
     /// Reads what has happened.
