@@ -4,6 +4,7 @@
 //! metadata, and the same tables read back by column name. No mechanics is computed here.
 
 mod actions;
+mod chosen_columns;
 mod column;
 mod contacts;
 mod cracks;

@@ -1,5 +1,7 @@
 //! The assembly as a system of equations: unknowns, pieces, forces and what they leave unbalanced.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::bond::Bond;
@@ -8,7 +10,7 @@ use super::iterative::Iterating;
 use super::kinematics::{ALL_FREEDOMS, ContactFrame};
 use super::side_sums::SideSums;
 use super::sparsity::{Numbers, Sparsity};
-use super::{Breakdown, Freedom, Iteration, Load, Settings};
+use super::{Breakdown, Freedom, Iteration, Load, Settings, Watch};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
 use crate::geometry::Pieces;
@@ -43,6 +45,8 @@ pub struct System<'a> {
     pub largest_force: f64,
     /// Largest contact force if only the moved bodies moved, `[force]`.
     pub moved_force: f64,
+    /// For who waits.
+    pub watch: Arc<Watch>,
 }
 
 /// Unbalanced loads and the scale to see them by.
@@ -120,6 +124,7 @@ impl<'a> System<'a> {
             factored: None,
             largest_force: 0.0,
             moved_force: 0.0,
+            watch: Arc::default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The load path: an iterator of equilibria.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::advance::{self, Point, Way};
 use super::control::{PathControl, Steered};
@@ -11,7 +12,8 @@ use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
 use crate::equilibrium::{
-    Equilibrium, Iteration, Settings, SolveError, Stability, State, second_order_work,
+    Equilibrium, Iteration, Settings, SolveError, Stability, State, Warning, Watch,
+    second_order_work,
 };
 use crate::ids::PerProperty;
 
@@ -35,6 +37,8 @@ pub struct LoadPath<'a> {
     /// No load step is left: an error, or separated.
     pub(super) ended: bool,
     pub(super) steered: Steered,
+    /// Grains set aside before loading.
+    aside_before: usize,
 }
 
 /// Factors at the two ends of a load step.
@@ -111,6 +115,7 @@ impl<'a> LoadPath<'a> {
             waiting: VecDeque::new(),
             ended: false,
             steered: Steered::default(),
+            aside_before: 0,
         };
         let way = Way {
             events: advance::first_events(&path.point),
@@ -131,6 +136,11 @@ impl<'a> LoadPath<'a> {
     /// Number of unknown displacements and rotations.
     pub fn unknowns(&self) -> usize {
         self.system.unknowns()
+    }
+
+    /// A window on the load step that is sought, to be read from another thread.
+    pub fn watch(&self) -> Arc<Watch> {
+        Arc::clone(&self.system.watch)
     }
 
     fn next_load_step(&mut self) -> Option<LoadStep> {
@@ -305,6 +315,28 @@ impl<'a> LoadPath<'a> {
         }
     }
 
+    /// With the warnings that the equilibrium itself gives rise to.
+    fn warned(&mut self, mut equilibrium: Equilibrium) -> Equilibrium {
+        let aside = equilibrium.set_aside.values().iter();
+        let grains = aside.filter(|&&aside| aside).count();
+        if equilibrium.step == 0 {
+            self.aside_before = grains;
+            return equilibrium;
+        }
+        let warnings = &mut equilibrium.warnings;
+        if equilibrium.cuts > 0 {
+            let cuts = equilibrium.cuts;
+            warnings.push(Warning::StepCut { cuts });
+        }
+        if grains > self.aside_before {
+            warnings.push(Warning::SetAside { grains });
+        }
+        if self.wants_modes() && equilibrium.stability.is_none() {
+            warnings.push(Warning::NoModes);
+        }
+        equilibrium
+    }
+
     fn wants_modes(&self) -> bool {
         self.system.settings.modes > 0
     }
@@ -325,6 +357,7 @@ impl Iterator for LoadPath<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         if self.waiting.is_empty() && !self.ended {
             let load_step = self.next_load_step()?;
+            self.system.watch.begin(self.step + 1);
             if self.breakage == Breakage::EventDriven {
                 self.take_events(&load_step);
             } else if self.steered.is_load_controlled() {
@@ -333,6 +366,7 @@ impl Iterator for LoadPath<'_> {
                 self.take_steered(load_step);
             }
         }
-        self.waiting.pop_front()
+        let next = self.waiting.pop_front()?;
+        Some(next.map(|equilibrium| self.warned(equilibrium)))
     }
 }
