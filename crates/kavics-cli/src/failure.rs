@@ -7,6 +7,7 @@ use kavics::equilibrium::SolveError;
 use kavics::scene::SceneError;
 use kavics_report::ReportError;
 use kavics_results::ResultsError;
+use kavics_verify::VerifyError;
 use thiserror::Error;
 
 /// Why a task failed.
@@ -47,9 +48,29 @@ pub enum Failure {
     /// The report could not be made.
     #[error("{0}")]
     Report(#[from] ReportError),
+    /// Validation cases could not be run.
+    #[error("{0}")]
+    Verify(#[from] VerifyError),
+    /// Validation cases do not hold.
+    #[error("{wrong} of the quantities are not as expected on this machine")]
+    Verdict {
+        /// How many.
+        wrong: usize,
+    },
     /// Standard output could not be written.
     #[error("stdout: {0}")]
     Output(#[from] std::io::Error),
+    /// The machine has no memory for the run.
+    #[error(
+        "about {needed} of memory needed, {available} available; fewer grains, solver = \"iterative\" or a larger machine \
+         may do, --any-size tries all the same"
+    )]
+    TooLarge {
+        /// What the run needs.
+        needed: String,
+        /// What there is.
+        available: String,
+    },
     /// Threads could not be started.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -74,11 +95,17 @@ impl Failure {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
-            Self::Scene(SceneError::Wrong(_)) | Self::Override { .. } | Self::Window { .. } => 2,
+            Self::Verdict { .. } => 1,
+            Self::Verify(VerifyError::Unknown { .. }) => 2,
+            Self::Scene(SceneError::Wrong(_))
+            | Self::Override { .. }
+            | Self::Window { .. }
+            | Self::TooLarge { .. } => 2,
             Self::NoEquilibrium { .. } => 3,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)
+            | Self::Verify(_)
             | Self::Output(_)
             | Self::Threads(_) => 4,
         })

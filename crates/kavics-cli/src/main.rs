@@ -4,16 +4,20 @@ mod arguments;
 mod check;
 mod compared;
 mod failure;
+mod limits;
 mod measure;
 mod origins;
 mod overrides;
 mod own_files;
 mod pack;
 mod pack_summary;
+mod progress;
 mod run;
 mod scene_file;
 mod summary;
+mod terminal;
 mod texts;
+mod verify;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -25,12 +29,13 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    terminal::speak(arguments.loudness());
     match perform(arguments.task) {
         Ok(()) => ExitCode::SUCCESS,
         // Who stops reading, as head does, has what it wanted.
         Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
-            scene_file::say(&format!("{failure}\n"));
+            terminal::say_error(&failure.to_string());
             failure.status()
         }
     }
@@ -43,6 +48,7 @@ fn perform(task: Task) -> Result<(), Failure> {
         Task::Run(arguments) => run::run(&arguments),
         Task::Measure(arguments) => measure::measure(&arguments),
         Task::Report(arguments) => texts::report(&arguments),
+        Task::Verify(arguments) => verify::verify(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

@@ -2,17 +2,20 @@
 
 use std::io::{self, Write, stdout};
 use std::path::Path;
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
+use kavics::warning::WarningKind;
 use kavics_results::{Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room};
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
+use crate::limits::{Estimate, bytes};
+use crate::progress::Progress;
 use crate::scene_file::say;
-use crate::{own_files, scene_file, summary};
+use crate::{own_files, scene_file, summary, terminal};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
@@ -22,16 +25,19 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let (mut scene, table) = scene_file::read(&arguments.scene)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
     scene.text = own_files::named(&scene.text, &scene.layers);
+    let began = Instant::now();
+    terminal::say_more(&opening(&scene, threads));
     let options = Options {
         threads,
         replace: arguments.force,
     };
+    Estimate::of(&scene).check(arguments.any_size)?;
     let mut results = Results::create(&folder, &scene, options)?;
     let mut lines = JsonLines::new(arguments.json);
     let failure = follow(&scene, &mut results, &mut lines)?;
     let lone = table.map(|table| table.unmatched(results.steps()));
     for lone in lone.unwrap_or_default() {
-        results.warn(format!("compare.csv: {lone}"));
+        results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
     }
     let warnings = results.warnings();
     let state = match failure {
@@ -40,6 +46,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
     say(&summary::summary(&steps));
+    say(&summary::closing(&scene, &steps, state, began.elapsed()));
     scene_file::show_warnings(&warnings);
     finish_report(&folder)?;
     match failure {
@@ -52,6 +59,20 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
 }
 
+/// What is about to be solved, and how.
+fn opening(scene: &Scene, threads: usize) -> String {
+    let unknowns = scene.load_path().unknowns();
+    let solver = if scene.settings.solver.iterates(unknowns) {
+        "iterative"
+    } else {
+        "direct"
+    };
+    format!(
+        "{unknowns} unknowns, {solver} solver, threads: {threads}, about {} of memory\n",
+        bytes(Estimate::of(scene).memory)
+    )
+}
+
 /// Pushes every equilibrium of the load path; answers why it ended early.
 fn follow(
     scene: &Scene,
@@ -59,22 +80,24 @@ fn follow(
     lines: &mut JsonLines,
 ) -> Result<Option<SolveError>, Failure> {
     let window = Window::new(scene.window.clone(), scene.assembly.grains.len());
-    let bar = progress_bar(scene);
-    for equilibrium in scene.load_path() {
+    let path = scene.load_path();
+    let mut progress = Progress::new(&scene.program, path.watch());
+    for equilibrium in path {
         let equilibrium = match equilibrium {
             Ok(equilibrium) => equilibrium,
             Err(error) => {
-                bar.finish_and_clear();
+                progress.end();
                 return Ok(Some(error));
             }
         };
         push(scene, &window, &equilibrium, results)?;
-        bar.set_position(equilibrium.step as u64);
+        let broken = results.steps().last().map_or(0, |row| row.broken);
+        progress.note(&equilibrium, broken);
         if equilibrium.step > 0 {
             lines.write(results.steps());
         }
     }
-    bar.finish_and_clear();
+    progress.end();
     Ok(None)
 }
 
@@ -108,14 +131,6 @@ fn snapshot<'a>(scene: &'a Scene, equilibrium: &'a Equilibrium, state: &'a State
         loads: &equilibrium.loads,
         reactions: &equilibrium.reactions,
     }
-}
-
-/// Hidden where stderr is no terminal.
-fn progress_bar(scene: &Scene) -> ProgressBar {
-    let stages = scene.program.stages.iter();
-    let steps: usize = stages.map(|stage| stage.factors.len()).sum();
-    let style = ProgressStyle::with_template("load step {pos}/{len} {wide_bar} {eta}");
-    ProgressBar::new(steps as u64).with_style(style.expect("a template that is known to be right"))
 }
 
 /// A JSON object per load step on stdout. A stdout that takes no more does not end the run.

@@ -39,6 +39,7 @@ fn every_task_has_a_help() {
         "run",
         "measure",
         "report",
+        "verify",
         "schema",
         "completions",
         "man",
