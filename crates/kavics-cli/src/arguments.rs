@@ -11,10 +11,13 @@ use kavics_report::StepChoice;
 use crate::draw_arguments::DrawArguments;
 use crate::export::ExportArguments;
 
+use crate::terminal::Loudness;
+
 const STATUS: &str = "\
 Exit status:
   0  done
-  2  wrong usage, or a wrong scene
+  1  a validation case does not hold
+  2  wrong usage, or a wrong scene, or one that the machine has no memory for
   3  no equilibrium; the results are valid up to the load step named
   4  a file could not be read or written
   75 stopped by a signal; run again with --resume";
@@ -28,6 +31,23 @@ const MOST_THREADS: usize = 1024;
 pub struct Arguments {
     #[command(subcommand)]
     pub task: Task,
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more: what the solver did at each load step, every quantity that is verified
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+impl Arguments {
+    /// How much is said.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Usual,
+        }
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -49,6 +69,8 @@ pub enum Task {
     Draw(DrawArguments),
     /// Write results for other programs
     Export(ExportArguments),
+    /// Run the validation cases that come with the program, on this machine
+    Verify(VerifyArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -71,6 +93,12 @@ pub struct SceneArguments {
 pub struct CheckArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
+    /// One JSON object on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// Do not refuse what this machine seems to have no memory for
+    #[arg(long)]
+    pub any_size: bool,
 }
 
 #[derive(Debug, Args)]
@@ -110,6 +138,9 @@ pub struct RunArguments {
     /// One JSON object per load step on stdout
     #[arg(long)]
     pub json: bool,
+    /// Run even what this machine seems to have no memory for
+    #[arg(long)]
+    pub any_size: bool,
 }
 
 #[derive(Debug, Args)]
@@ -150,6 +181,16 @@ pub struct ViewArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// Cases to run; all when absent
+    #[arg(value_name = "CASE")]
+    pub cases: Vec<String>,
+    /// One JSON object per quantity on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct CompletionsArguments {
     /// Shell
     pub shell: Shell,
@@ -173,6 +214,7 @@ const TASKS: &[&str] = &[
     "view",
     "draw",
     "export",
+    "verify",
     "schema",
     "completions",
     "man",

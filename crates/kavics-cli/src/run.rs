@@ -2,13 +2,13 @@
 
 use std::io::{self, Write, stdout};
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
 use kavics::loading::{LoadPath, Station};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
+use kavics::warning::WarningKind;
 use kavics_results::{
     Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
     clear_checkpoints,
@@ -16,8 +16,10 @@ use kavics_results::{
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
+use crate::limits::{Estimate, bytes};
+use crate::progress::Progress;
 use crate::scene_file::say;
-use crate::{own_files, resume, scene_file, signals, summary};
+use crate::{own_files, resume, scene_file, signals, summary, terminal};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
@@ -29,10 +31,13 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let (mut scene, table) = scene_file::read(&arguments.scene)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
     scene.text = own_files::named(&scene.text, &scene.layers);
+    let began = Instant::now();
+    terminal::say_more(&opening(&scene, threads));
     let options = Options {
         threads,
         replace: arguments.force,
     };
+    Estimate::of(&scene).check(arguments.any_size)?;
     let start = if arguments.resume {
         check_same(&folder, &scene)?;
         if resume::is_finished(&folder)? {
@@ -61,11 +66,12 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     };
     let lone = table.map(|table| table.unmatched(results.steps()));
     for lone in lone.unwrap_or_default() {
-        results.warn(format!("compare.csv: {lone}"));
+        results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
     }
     let warnings = results.warnings();
     let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
     say(&summary::summary(&steps));
+    say(&summary::closing(&scene, &steps, state, began.elapsed()));
     scene_file::show_warnings(&warnings);
     finish_report(&folder)?;
     match failure {
@@ -76,6 +82,20 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             folder,
         }),
     }
+}
+
+/// What is about to be solved, and how.
+fn opening(scene: &Scene, threads: usize) -> String {
+    let unknowns = scene.load_path().unknowns();
+    let solver = if scene.settings.solver.iterates(unknowns) {
+        "iterative"
+    } else {
+        "direct"
+    };
+    format!(
+        "{unknowns} unknowns, {solver} solver, threads: {threads}, about {} of memory\n",
+        bytes(Estimate::of(scene).memory)
+    )
 }
 
 /// How a load path ended.
@@ -98,7 +118,7 @@ struct Follower<'r, 'a> {
 impl Follower<'_, '_> {
     /// Pushes every equilibrium of the load path.
     fn follow(&mut self, mut path: LoadPath<'_>) -> Result<Ended, Failure> {
-        let bar = progress_bar(self.scene);
+        let mut progress = Progress::new(&self.scene.program, path.watch());
         let ended = loop {
             match path.advance() {
                 None => break Ended::Done,
@@ -110,7 +130,8 @@ impl Follower<'_, '_> {
                 Some(Ok(Station::Event)) => {}
                 Some(Ok(Station::Equilibrium(equilibrium))) => {
                     push(self.scene, &self.window, &equilibrium, self.results)?;
-                    bar.set_position(equilibrium.step as u64);
+                    let broken = self.results.steps().last().map_or(0, |row| row.broken);
+                    progress.note(&equilibrium, broken);
                     if equilibrium.step > 0 {
                         self.lines.write(self.results.steps());
                     }
@@ -120,7 +141,7 @@ impl Follower<'_, '_> {
                 self.checkpoint(&path)?;
             }
         };
-        bar.finish_and_clear();
+        progress.end();
         Ok(ended)
     }
 
@@ -181,14 +202,6 @@ fn snapshot<'a>(scene: &'a Scene, equilibrium: &'a Equilibrium, state: &'a State
         loads: &equilibrium.loads,
         reactions: &equilibrium.reactions,
     }
-}
-
-/// Hidden where stderr is no terminal.
-fn progress_bar(scene: &Scene) -> ProgressBar {
-    let stages = scene.program.stages.iter();
-    let steps: usize = stages.map(|stage| stage.factors.len()).sum();
-    let style = ProgressStyle::with_template("load step {pos}/{len} {wide_bar} {eta}");
-    ProgressBar::new(steps as u64).with_style(style.expect("a template that is known to be right"))
 }
 
 /// A JSON object per load step on stdout. A stdout that takes no more does not end the run.

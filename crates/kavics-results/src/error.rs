@@ -69,7 +69,7 @@ pub enum ResultsError {
         source: serde_json::Error,
     },
     /// A table lacks a column.
-    #[error("{}: no column is called \"{column}\"", path.display())]
+    #[error("{}: no column is called \"{column}\"; [record] of the scene says which columns there are", path.display())]
     NoColumn {
         /// The file.
         path: PathBuf,
@@ -165,6 +165,19 @@ pub enum ResultsError {
         folder: PathBuf,
         /// Why.
         source: kavics::equilibrium::MemoryError,
+    },
+    /// The tables were written by a later version.
+    #[error(
+        "{} holds tables of version {found}, written by kavics {version}; this is kavics {}, which reads them up to version {}",
+        folder.display(), env!("CARGO_PKG_VERSION"), crate::SCHEMA_VERSION
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// Version of its tables.
+        found: u32,
+        /// The kavics that wrote them.
+        version: String,
     },
     /// Results lack a table.
     #[error("{} is missing: the results are not whole", path.display())]

@@ -15,6 +15,7 @@ use kavics::scene::Scene;
 use crate::ResultsError;
 use crate::actions::{ActionRow, Actions, action_columns};
 use crate::checkpoint::clear_checkpoints;
+use crate::chosen_columns::retain;
 use crate::contacts::{ContactRow, contact_columns};
 use crate::cracks::{crack_columns, crack_rows};
 use crate::encode::{publish, publish_after, publish_rows, publish_table};
@@ -29,7 +30,7 @@ use crate::room::{CRACKS, MODES, RECORDED, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
-use crate::warning::SolverWarnings;
+use crate::warning::{SolverWarnings, without_moduli};
 
 /// Tables that grow are written again at most this often.
 const BETWEEN_WRITES: Duration = Duration::from_millis(500);
@@ -63,6 +64,8 @@ pub struct Results<'a> {
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
     pub(crate) solver_warnings: SolverWarnings,
     pub(crate) log: Log,
+    /// Load steps whose moduli were asked for and do not exist.
+    pub(crate) without_moduli: Vec<usize>,
     written: Instant,
     /// Rows that an earlier run of the same results wrote.
     pub(crate) before: Before,
@@ -143,6 +146,7 @@ impl<'a> Results<'a> {
             in_window: window_grains(scene),
             unrecorded: None,
             solver_warnings: SolverWarnings::default(),
+            without_moduli: Vec::new(),
             log: Log::open(),
             written: Instant::now(),
             before: Before::default(),
@@ -168,6 +172,9 @@ impl<'a> Results<'a> {
         self.action_rows.extend(actions);
         if equilibrium.step > 0 {
             self.steps.push(self.step_row(equilibrium, measures));
+            if equilibrium.tangents.is_some() && measures.moduli.is_none() {
+                self.without_moduli.push(equilibrium.step);
+            }
         }
         self.log.note_step(equilibrium.step, equilibrium.iterations);
         if self.is_recorded(equilibrium.step) {
@@ -224,7 +231,9 @@ impl<'a> Results<'a> {
     /// What the user should know so far: of the scene, then of the load steps, each warning once.
     pub fn warnings(&self) -> Vec<String> {
         let known = self.record.warnings.iter().cloned();
-        known.chain(self.solver_warnings.texts()).collect()
+        let no_moduli = without_moduli(&self.without_moduli);
+        let of_steps = self.solver_warnings.texts().chain(no_moduli);
+        known.chain(of_steps).collect()
     }
 
     /// Adds a sentence that the user should know.
@@ -329,10 +338,13 @@ impl<'a> Results<'a> {
         let assembly = &self.scene.assembly;
         let active = self.active_contacts(&equilibrium.state);
         let grains = |range| self.grain_rows(range, equilibrium, grain_stress, &active);
-        let (count, columns) = (assembly.grains.len(), grain_columns());
+        let wanted = &self.scene.record_columns;
+        let (count, mut columns) = (assembly.grains.len(), grain_columns());
+        retain(&mut columns, wanted.grains.as_deref(), equilibrium.step);
         let write_grains = || publish_rows(&path("grains"), &columns, count, grains);
         let contacts = |range| self.contact_rows(range, equilibrium);
-        let (count, columns) = (assembly.contacts.len(), contact_columns());
+        let (count, mut columns) = (assembly.contacts.len(), contact_columns());
+        retain(&mut columns, wanted.contacts.as_deref(), equilibrium.step);
         let write_contacts = || publish_rows(&path("contacts"), &columns, count, contacts);
         let (grains, contacts) = rayon::join(write_grains, write_contacts);
         grains?;

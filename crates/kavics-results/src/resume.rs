@@ -28,6 +28,7 @@ const SHARE: u32 = 20;
 /// What results remember beside their rows.
 const ACTION_FACTORS: &str = "results.action_factors";
 const WARNINGS: &str = "results.warnings";
+const WITHOUT_MODULI: &str = "results.without_moduli";
 
 impl<'a> Results<'a> {
     /// Goes on with the results of a run that was broken off, from a checkpoint in the same folder.
@@ -58,6 +59,8 @@ impl<'a> Results<'a> {
             .at(numbers(&checkpoint.memory, ACTION_FACTORS))
             .ok_or_else(damaged)?;
         results.solver_warnings = SolverWarnings::of_numbers(numbers(&checkpoint.memory, WARNINGS));
+        let without_moduli = numbers(&checkpoint.memory, WITHOUT_MODULI).iter();
+        results.without_moduli = without_moduli.map(|&step| step as usize).collect();
         results.broken = checkpoint.header.broken;
         let log = fs::read_to_string(folder.join("log.ndjson")).unwrap_or_default();
         results.log = Log::resume(log, checkpoint.header.step);
@@ -85,6 +88,11 @@ impl<'a> Results<'a> {
         };
         keep(ACTION_FACTORS, factors);
         keep(WARNINGS, self.solver_warnings.numbers());
+        let without_moduli = self.without_moduli.iter();
+        keep(
+            WITHOUT_MODULI,
+            without_moduli.map(|&step| step as f64).collect(),
+        );
         let header = CheckpointHeader {
             checkpoint_version: CHECKPOINT_VERSION,
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -22,15 +22,18 @@ mod stability;
 pub(crate) mod steered;
 pub(crate) mod system;
 mod tangent;
+mod watch;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
 pub use memory::{Memory, MemoryColumn, MemoryError};
 pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
+pub use watch::{Glance, Watch};
 
 use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};
+use crate::warning::WarningKind;
 
 /// Displacement of a grain or side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -291,6 +294,52 @@ pub enum Warning {
     },
     /// Nothing ties the loaded part to the supports any more; the path ends.
     Separated,
+    /// The load step was taken in parts, as it did not go in one.
+    StepCut {
+        /// How often it was halved.
+        cuts: usize,
+    },
+    /// More grains are set aside than before loading.
+    SetAside {
+        /// How many are now.
+        grains: usize,
+    },
+    /// Contacts changed phase in circles before they settled.
+    Chattered {
+        /// How many contacts changed phase more than once.
+        contacts: usize,
+    },
+    /// An iteration came near the limit at which it is given up.
+    ManyIterations {
+        /// How many there were.
+        iterations: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// Modes were asked for and are not there.
+    NoModes,
+    /// Solved by iteration, which does not count the floppy modes that a factor would hold.
+    FloppyModesUncounted,
+}
+
+impl Warning {
+    /// What it is about.
+    pub fn kind(&self) -> WarningKind {
+        match self {
+            Self::RegularisedPivots { .. } => WarningKind::FloppyModesHeld,
+            Self::ShearFloor { .. } => WarningKind::ShearFloor,
+            Self::SolvedDirectly { .. } => WarningKind::SolvedDirectly,
+            Self::SecondOrderWork { .. } => WarningKind::SecondOrderWork,
+            Self::WorkError { .. } => WarningKind::WorkError,
+            Self::Separated => WarningKind::Separated,
+            Self::StepCut { .. } => WarningKind::StepCut,
+            Self::SetAside { .. } => WarningKind::SetAside,
+            Self::Chattered { .. } => WarningKind::Chattered,
+            Self::ManyIterations { .. } => WarningKind::ManyIterations,
+            Self::NoModes => WarningKind::NoModes,
+            Self::FloppyModesUncounted => WarningKind::FloppyModesUncounted,
+        }
+    }
 }
 
 /// An equilibrium: the end of a load step, or the undeformed state as step 0.

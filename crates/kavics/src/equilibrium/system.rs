@@ -12,7 +12,7 @@ use super::iterative::Iterating;
 use super::kinematics::{ALL_FREEDOMS, ContactFrame, RigidMotion};
 use super::side_sums::SideSums;
 use super::sparsity::{Numbers, Sparsity};
-use super::{Breakdown, Displacement, Freedom, Iteration, Load, Settings};
+use super::{Breakdown, Displacement, Freedom, Iteration, Load, Settings, Watch};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
 use crate::geometry::{Pieces, Vector};
@@ -51,6 +51,8 @@ pub struct System<'a> {
     pub stop: Option<Arc<AtomicBool>>,
     /// A search has ended so.
     pub stopped: bool,
+    /// For who waits.
+    pub watch: Arc<Watch>,
 }
 
 /// Unbalanced loads and the scale to see them by.
@@ -130,6 +132,7 @@ impl<'a> System<'a> {
             moved_force: 0.0,
             stop: None,
             stopped: false,
+            watch: Arc::default(),
         }
     }
 

@@ -189,6 +189,10 @@ impl Walk<'_, '_> {
                 drive,
             });
         }
+        let watch = &self.system.watch;
+        watch.note_broken(broken.len());
+        watch.note_load_factor(load_factor);
+        watch.note_iteration(self.way.progress.iterations, self.point.residual);
         if may_be_loose {
             self.note_set_aside(load_factor, avalanche);
         }
