@@ -1,3 +1,4 @@
+import "./reset.css";
 import "uplot/dist/uPlot.min.css";
 import "./viewer.css";
 import { openSource } from "./source";

@@ -13,7 +13,7 @@ const PLACE = {
   vec2 point = corner == 0 || corner == 1 || corner == 3 ? ends.xy : ends.zw;
   gl_Position = place(point + across * (v_across / u_scale));`,
   hairline: `
-  gl_Position = place(corner == 2 ? ends.zw : ends.xy + across * ((corner == 0 ? 0.75 : -0.75) / u_scale));`,
+  gl_Position = place(corner == 2 ? ends.zw : ends.xy + across * ((corner == 0 ? 1.2 : -1.2) / u_scale));`,
 };
 const vertex = (shape: Shape, signed: boolean): string => `${FETCH}${VIEW}${COLOUR}
 uniform sampler2D u_ends, u_styles;
@@ -32,7 +32,7 @@ void main() {
   }
   vec4 ends = row(u_ends, number);
   vec3 tint = ${signed ? "style.x < 0.0 ? u_below : u_above" : "colour(style.y)"};
-  v_colour = vec4(tint, u_plain.a * min(width, 1.0));
+  v_colour = vec4(tint, u_plain.a * min(width, 1.0)${shape === "hairline" ? " * 0.6" : ""});
   vec2 along = ends.zw - ends.xy;
   vec2 across = vec2(-along.y, along.x) * inversesqrt(max(dot(along, along), 1e-30));
   v_across = 0.0;
