@@ -96,11 +96,11 @@ impl Failure {
         }
         ExitCode::from(match self {
             Self::Verdict { .. } => 1,
-            Self::Verify(VerifyError::Unknown { .. }) => 2,
             Self::Scene(SceneError::Wrong(_))
             | Self::Override { .. }
             | Self::Window { .. }
-            | Self::TooLarge { .. } => 2,
+            | Self::TooLarge { .. }
+            | Self::Verify(VerifyError::Unknown { .. }) => 2,
             Self::NoEquilibrium { .. } => 3,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
