@@ -222,6 +222,21 @@ mod tests {
     }
 
     #[test]
+    #[cfg(target_os = "linux")]
+    fn what_no_machine_has_memory_for_is_refused_unless_it_is_wanted() {
+        let estimate = Estimate {
+            memory: 1e18,
+            results: 0.0,
+        };
+        let refused = estimate.check(false).expect_err("a refusal").to_string();
+        assert!(
+            refused.starts_with("about 1000000000.0 GB of memory needed"),
+            "{refused}"
+        );
+        assert!(estimate.check(true).is_ok());
+    }
+
+    #[test]
     fn a_control_group_leaves_what_it_does_not_hold() {
         let group = tempfile::tempdir().expect("a temporary folder");
         let write = |name: &str, text: &str| fs::write(group.path().join(name), text);

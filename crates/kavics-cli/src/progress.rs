@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn the_time_left_is_that_of_the_rest_at_the_same_speed() {
         assert_eq!(time_left(0.25, Duration::from_secs(20)), "60 s left");
-        assert_eq!(time_left(0.0, Duration::from_secs(600)), "10 min so far");
+        assert_eq!(time_left(0.0, Duration::from_mins(10)), "10 min so far");
     }
 
     #[test]
@@ -210,7 +210,7 @@ mod tests {
             load_factor: -123.456,
             residual: 3.2e-11,
         };
-        let line = line(&plan, glance, 0, Duration::from_secs(36_000));
+        let line = line(&plan, glance, 0, Duration::from_hours(10));
         assert!(line.chars().count() < COLUMNS, "{line}");
     }
 }

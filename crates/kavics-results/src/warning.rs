@@ -112,8 +112,9 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
 fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
-        Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
-        Warning::Chattered { contacts } => *contacts,
+        Warning::ShearFloor { contacts }
+        | Warning::SecondOrderWork { contacts }
+        | Warning::Chattered { contacts } => *contacts,
         Warning::SetAside { grains } => *grains,
         Warning::StepCut { cuts } => *cuts,
         Warning::ManyIterations { iterations, .. } => *iterations,

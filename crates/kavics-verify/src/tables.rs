@@ -27,6 +27,7 @@ impl Vector {
     }
 
     /// Turned counter-clockwise by a right angle.
+    #[must_use]
     pub fn quarter_turn(self) -> Self {
         Self(-self.1, self.0)
     }

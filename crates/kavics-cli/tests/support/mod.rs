@@ -18,7 +18,7 @@ pub struct Run {
     pub status: i32,
     /// Text for the user.
     pub stderr: String,
-    run: kavics_verify::Run,
+    left: kavics_verify::Run,
     _room: TempDir,
 }
 
@@ -32,7 +32,7 @@ impl Run {
         Self {
             status: run.status,
             stderr: run.stderr.clone(),
-            run,
+            left: run,
             _room: room,
         }
     }
@@ -44,17 +44,17 @@ impl Run {
 
     /// A table; `steps`, `iterations` and `events` hold all load steps.
     pub fn table(&self, name: &str, step: usize) -> Result<Columns, String> {
-        self.run.table(name, step)
+        self.left.table(name, step)
     }
 
     /// A column of `steps`.
     pub fn steps(&self, column: &str) -> Vec<f64> {
-        self.run.steps(column).expect("a column of steps")
+        self.left.steps(column).expect("a column of steps")
     }
 
     /// The last load step.
     pub fn last_step(&self) -> usize {
-        self.run.last_step().expect("steps")
+        self.left.last_step().expect("steps")
     }
 }
 
@@ -64,6 +64,6 @@ pub struct Tables;
 impl Tables {
     /// Those of a run.
     pub fn read(run: &Run, step: usize) -> kavics_verify::Tables {
-        kavics_verify::Tables::read(&run.run, step).expect("tables")
+        kavics_verify::Tables::read(&run.left, step).expect("tables")
     }
 }

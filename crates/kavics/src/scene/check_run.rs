@@ -69,9 +69,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let record = file.record.as_ref().map(|record| &record.value);
     let every = record.and_then(|record| record.every.as_ref());
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
-    let columns = record.map_or(Some(RecordColumns::default()), |record| {
-        record_columns(record, checker)
-    });
+    let columns = record.map(|record| record_columns(record, checker));
     let compare = match &file.compare {
         None => Some(None),
         Some(table) => named_file(&table.value.file, folder, "a csv file", checker).map(Some),
@@ -90,7 +88,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
         record_cracks: record.and_then(|record| record.cracks).unwrap_or(false),
-        record_columns: columns?,
+        record_columns: columns.unwrap_or_default(),
         compare: compare?,
     })
 }

@@ -58,44 +58,28 @@ pub struct RecordColumns {
 }
 
 /// The columns that `[record]` names.
-pub(super) fn record_columns(file: &RecordFile, checker: &mut Checker) -> Option<RecordColumns> {
-    let grains = chosen(file.grains.as_ref(), "grains", &GRAIN_COLUMNS, checker);
-    let contacts = chosen(
-        file.contacts.as_ref(),
-        "contacts",
-        &CONTACT_COLUMNS,
-        checker,
-    );
-    Some(RecordColumns {
-        grains: grains?,
-        contacts: contacts?,
-    })
+pub(super) fn record_columns(file: &RecordFile, checker: &mut Checker) -> RecordColumns {
+    let grains = file.grains.as_ref();
+    let grains = grains.map(|names| chosen(names, "grains", &GRAIN_COLUMNS, checker));
+    let contacts = file.contacts.as_ref();
+    let contacts = contacts.map(|names| chosen(names, "contacts", &CONTACT_COLUMNS, checker));
+    RecordColumns { grains, contacts }
 }
 
 fn chosen(
-    names: Option<&Vec<Placed<String>>>,
+    names: &[Placed<String>],
     table: &str,
     known: &[&str],
     checker: &mut Checker,
-) -> Option<Option<Vec<String>>> {
-    let Some(names) = names else {
-        return Some(None);
-    };
-    let unknown = names
-        .iter()
-        .filter(|name| !known.contains(&name.value.as_str()));
-    let mut wrong = false;
-    for name in unknown {
-        wrong = true;
+) -> Vec<String> {
+    let is_unknown = |name: &&Placed<String>| !known.contains(&name.value.as_str());
+    for name in names.iter().filter(is_unknown) {
         let expected = format!("expected {}", either(known.iter().copied()));
+        let problem = format!("`{table}` has no column `{}`", name.value);
         checker.push(
-            Problem::at(
-                &name.span,
-                format!("`{table}` has no column `{}`", name.value),
-                expected,
-            )
-            .suggest(likely(&name.value, known.iter().copied())),
+            Problem::at(&name.span, problem, expected)
+                .suggest(likely(&name.value, known.iter().copied())),
         );
     }
-    (!wrong).then(|| Some(names.iter().map(|name| name.value.clone()).collect()))
+    names.iter().map(|name| name.value.clone()).collect()
 }
