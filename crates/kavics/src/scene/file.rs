@@ -222,7 +222,7 @@ pub struct EquilibriumFile {
     pub tolerance: Option<Number>,
     /// "secant" (when absent) or "tangent".
     pub iteration: Option<Placed<String>>,
-    /// "worst-first" (when absent) or "simultaneous".
+    /// "worst-first" (when absent), "simultaneous" or "event-driven".
     pub breakage: Option<Placed<String>>,
     /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
     pub tie_tolerance: Option<Number>,
