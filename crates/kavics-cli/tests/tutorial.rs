@@ -1,5 +1,5 @@
-//! docs/tutorial.md is followed as a reader would: its files are written, its commands run, in their order, and they
-//! say what stands there.
+//! docs/tutorial.md and README.md are followed as a reader would: the files shown are written, the commands run, in their
+//! order, and they say what stands there.
 //!
 //! A line `…` stands for any lines, `…` within a line for any text; `^C` for Ctrl-C. Commands of Python are passed over
 //! where there is no Python with pandas.
@@ -7,12 +7,18 @@
 
 use std::ffi::OsString;
 use std::fs;
+use std::os::unix::fs::symlink;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
 const TUTORIAL: &str = include_str!("../../../docs/tutorial.md");
+const README: &str = include_str!("../../../README.md");
 
 /// A fenced block: what stands behind the fence, and the lines.
 struct Block<'a> {
@@ -126,6 +132,13 @@ impl Shown<'_> {
     }
 }
 
+/// Ctrl-C may come before a command that serves is ready to end by itself; it ends all the same.
+fn status_of(output: &Output) -> Option<i32> {
+    let by_interrupt = output.status.signal() == Some(Signal::SIGINT as i32);
+    let status = output.status.code();
+    status.or(by_interrupt.then_some(0))
+}
+
 fn has_said(said: &Path) -> bool {
     fs::read_to_string(said).is_ok_and(|text| text.contains('\n'))
 }
@@ -138,8 +151,7 @@ fn has_checkpoint(place: &Path) -> bool {
 }
 
 fn interrupt(child: &Child) {
-    use nix::sys::signal::{Signal, kill};
-    let child = nix::unistd::Pid::from_raw(child.id() as i32);
+    let child = Pid::from_raw(child.id() as i32);
     kill(child, Signal::SIGINT).expect("a running child");
 }
 
@@ -200,9 +212,39 @@ fn the_tutorial_can_be_followed() {
             let output = shown.run(room.path());
             let said = String::from_utf8_lossy(&output.stdout);
             shown.assert_says(&said);
-            assert_eq!(output.status.code(), Some(shown.status()), "{said}");
+            assert_eq!(status_of(&output), Some(shown.status()), "{said}");
         }
     }
+}
+
+/// The commands in the first column of indented lines.
+fn listed(page: &str) -> impl Iterator<Item = &str> {
+    let lines = page.lines().filter_map(|line| line.strip_prefix("    "));
+    let lines = lines.filter(|line| line.starts_with("kavics "));
+    lines.map(|line| line.split("  ").next().unwrap_or(line))
+}
+
+#[test]
+fn the_commands_of_the_readme_work() {
+    let room = tempfile::tempdir().expect("a folder");
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for folder in ["scenes", "validation"] {
+        symlink(workspace.join(folder), room.path().join(folder)).expect("a link");
+    }
+    for command in listed(README) {
+        let interrupted = command.starts_with("kavics view");
+        let option = if interrupted { " --no-open" } else { "" };
+        let shown = Shown {
+            command: &format!("{command}{option}"),
+            interrupted,
+            says: Vec::new(),
+        };
+        let output = shown.run(room.path());
+        let said = String::from_utf8_lossy(&output.stdout);
+        let status = status_of(&output);
+        assert_eq!(status, Some(shown.status()), "{command}\n{said}");
+    }
+    assert!(listed(README).count() > 5);
 }
 
 #[test]
