@@ -183,10 +183,11 @@ export class Assembly {
   }
 }
 
+/** Textures of what has been made; ends that several use are made apart and freed apart. */
 function texturesOf(value: unknown): WebGLTexture[] {
   if (value instanceof WebGLTexture) return [value];
-  if (value instanceof Ends) return value.textures;
   if (value === null || typeof value !== "object" || ArrayBuffer.isView(value) || Array.isArray(value)) return [];
+  if ("textures" in value) return value.textures as WebGLTexture[];
   return Object.values(value).flatMap((inner) => (inner instanceof Ends && inner.shared ? [] : texturesOf(inner)));
 }
 

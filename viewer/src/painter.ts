@@ -65,7 +65,7 @@ export class Painter {
   private containerOf({ edges }: Picture, factor: number): Segments {
     if (this.frame?.edges !== edges || this.frame.factor !== factor) {
       const { ends, styles } = this.frame?.segments ?? {};
-      for (const texture of [...(ends?.textures ?? []), styles?.texture ?? null]) this.gl.context.deleteTexture(texture);
+      for (const texture of [...(ends?.textures ?? []), ...(styles?.textures ?? [])]) this.gl.context.deleteTexture(texture);
       this.frame = { edges, factor, segments: container(this.gl, edges, factor) };
     }
     return this.frame.segments;
