@@ -1,6 +1,7 @@
 //! What stands behind `kavics` on the command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -8,13 +9,18 @@ use clap_complete::Shell;
 use kavics_report::StepChoice;
 
 use crate::draw_arguments::DrawArguments;
+use crate::export::ExportArguments;
+
+use crate::terminal::Loudness;
 
 const STATUS: &str = "\
 Exit status:
   0  done
-  2  wrong usage, or a wrong scene
+  1  a validation case does not hold
+  2  wrong usage, or a wrong scene, or one that the machine has no memory for
   3  no equilibrium; the results are valid up to the load step named
-  4  a file could not be read or written";
+  4  a file could not be read or written
+  75 stopped by a signal; run again with --resume";
 
 /// More threads than any machine has, and fewer than one can start.
 const MOST_THREADS: usize = 1024;
@@ -25,6 +31,23 @@ const MOST_THREADS: usize = 1024;
 pub struct Arguments {
     #[command(subcommand)]
     pub task: Task,
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more: what the solver did at each load step, every quantity that is verified
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+impl Arguments {
+    /// How much is said.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Usual,
+        }
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -44,6 +67,10 @@ pub enum Task {
     View(ViewArguments),
     /// Draw the assembly at a load step, or curves, for a paper
     Draw(DrawArguments),
+    /// Write results for other programs
+    Export(ExportArguments),
+    /// Run the validation cases that come with the program, on this machine
+    Verify(VerifyArguments),
     /// Write the JSON Schema of the scene file to stdout
     Schema,
     /// Write completions for a shell to stdout
@@ -66,6 +93,12 @@ pub struct SceneArguments {
 pub struct CheckArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
+    /// One JSON object on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// Do not refuse what this machine seems to have no memory for
+    #[arg(long)]
+    pub any_size: bool,
 }
 
 #[derive(Debug, Args)]
@@ -96,9 +129,18 @@ pub struct RunArguments {
     /// Replace results that are there already
     #[arg(long)]
     pub force: bool,
+    /// Go on with results that were broken off or stopped, from their last checkpoint
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Least time between two checkpoints in seconds; 0: after every load step
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    pub checkpoint: Duration,
     /// One JSON object per load step on stdout
     #[arg(long)]
     pub json: bool,
+    /// Run even what this machine seems to have no memory for
+    #[arg(long)]
+    pub any_size: bool,
 }
 
 #[derive(Debug, Args)]
@@ -139,6 +181,16 @@ pub struct ViewArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// Cases to run; all when absent
+    #[arg(value_name = "CASE")]
+    pub cases: Vec<String>,
+    /// One JSON object per quantity on stdout instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct CompletionsArguments {
     /// Shell
     pub shell: Shell,
@@ -161,6 +213,8 @@ const TASKS: &[&str] = &[
     #[cfg(feature = "view")]
     "view",
     "draw",
+    "export",
+    "verify",
     "schema",
     "completions",
     "man",
@@ -173,6 +227,12 @@ fn load_step(text: &str) -> Result<usize, String> {
             "expected numbers of load steps or \"last\", with commas between".to_owned()
         }),
     }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "expected a number of seconds, not negative".to_owned();
+    let seconds: f64 = text.parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(seconds).map_err(|_| wrong())
 }
 
 fn threads(text: &str) -> Result<usize, String> {

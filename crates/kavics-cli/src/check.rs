@@ -6,17 +6,22 @@ use kavics::scene::Scene;
 
 use crate::arguments::CheckArguments;
 use crate::failure::Failure;
+use crate::limits::{Estimate, bytes};
 use crate::scene_file;
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let (scene, _) = scene_file::read(&arguments.scene)?;
     let counts = Counts::of(&scene);
     let mut out = stdout().lock();
-    for (name, value) in counts.lines() {
-        writeln!(out, "{name:<11}{value}")?;
+    if arguments.json {
+        writeln!(out, "{}", counts.json())?;
+    } else {
+        for (name, value) in counts.lines() {
+            writeln!(out, "{name:<11}{value}")?;
+        }
     }
     scene_file::show_warnings(&scene.warnings);
-    Ok(())
+    counts.estimate.check(arguments.any_size)
 }
 
 struct Counts {
@@ -27,7 +32,7 @@ struct Counts {
     window: usize,
     stages: usize,
     steps: usize,
-    bodies: usize,
+    estimate: Estimate,
 }
 
 impl Counts {
@@ -43,11 +48,25 @@ impl Counts {
             window: scene.window.len(),
             stages: scene.program.stages.len(),
             steps: scene.program.stages.iter().map(|s| s.factors.len()).sum(),
-            bodies,
+            estimate: Estimate::of(scene),
         }
     }
 
-    fn lines(&self) -> [(&'static str, String); 7] {
+    fn json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "grains": self.grains,
+            "contacts": self.contacts,
+            "freedoms": self.freedoms,
+            "held": self.held,
+            "window": self.window,
+            "stages": self.stages,
+            "steps": self.steps,
+            "memory": self.estimate.memory.round(),
+            "results": self.estimate.results.round(),
+        })
+    }
+
+    fn lines(&self) -> [(&'static str, String); 8] {
         [
             ("grains", self.grains.to_string()),
             ("contacts", self.contacts.to_string()),
@@ -58,19 +77,8 @@ impl Counts {
             ("window", format!("{} grains", self.window)),
             ("stages", self.stages.to_string()),
             ("load steps", self.steps.to_string()),
-            ("memory", format!("about {}", megabytes(self.memory()))),
+            ("memory", format!("about {}", bytes(self.estimate.memory))),
+            ("results", format!("about {}", bytes(self.estimate.results))),
         ]
     }
-
-    /// Bytes: states, contacts, and the factor of a plane graph, whose fill grows like n·log n.
-    fn memory(&self) -> f64 {
-        let bodies = self.bodies as f64;
-        let contacts = self.contacts as f64;
-        let fill = 3.0 * bodies * (bodies + 2.0).log2();
-        16e6 + 600.0 * bodies + 900.0 * contacts + 9.0 * 12.0 * fill
-    }
-}
-
-fn megabytes(bytes: f64) -> String {
-    format!("{:.0} MB", bytes / 1e6)
 }

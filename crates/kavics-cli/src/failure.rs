@@ -10,6 +10,7 @@ use kavics_report::{PageError, ReportError};
 use kavics_results::ResultsError;
 #[cfg(feature = "view")]
 use kavics_server::ServerError;
+use kavics_verify::VerifyError;
 use thiserror::Error;
 
 /// Why a task failed.
@@ -44,6 +45,25 @@ pub enum Failure {
         /// Results folder.
         folder: PathBuf,
     },
+    /// The results to go on with ended without an equilibrium.
+    #[error("{} has ended already: {why}", folder.display())]
+    Ended {
+        /// Results folder.
+        folder: PathBuf,
+        /// Why there is no equilibrium.
+        why: String,
+    },
+    /// The run was told to stop.
+    #[error("stopped after load step {last}; kavics run --resume goes on from the checkpoint in {}", folder.display())]
+    Stopped {
+        /// Last load step of the results.
+        last: usize,
+        /// Results folder.
+        folder: PathBuf,
+    },
+    /// Signals cannot be waited for.
+    #[error("signals: {0}")]
+    Signals(#[from] ctrlc::Error),
     /// A file of the results could not be read or written.
     #[error("{0}")]
     Results(#[from] ResultsError),
@@ -57,9 +77,29 @@ pub enum Failure {
     /// A picture could not be made.
     #[error("{0}")]
     Picture(#[from] PictureError),
+    /// Validation cases could not be run.
+    #[error("{0}")]
+    Verify(#[from] VerifyError),
+    /// Validation cases do not hold.
+    #[error("{wrong} of the quantities are not as expected on this machine")]
+    Verdict {
+        /// How many.
+        wrong: usize,
+    },
     /// Standard output could not be written.
     #[error("stdout: {0}")]
     Output(#[from] std::io::Error),
+    /// The machine has no memory for the run.
+    #[error(
+        "about {needed} of memory needed, {available} available; fewer grains, solver = \"iterative\" or a larger machine \
+         may do, --any-size tries all the same"
+    )]
+    TooLarge {
+        /// What the run needs.
+        needed: String,
+        /// What there is.
+        available: String,
+    },
     /// Threads could not be started.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -84,24 +124,32 @@ impl Failure {
             | ResultsError::NotOfARun { .. }
             | ResultsError::InUse { .. }
             | ResultsError::OtherScene { .. }
+            | ResultsError::SceneChanged { .. }
+            | ResultsError::OtherAssembly { .. }
             | ResultsError::UnknownEnding { .. },
         ) = results
         {
             return ExitCode::from(2);
         }
         ExitCode::from(match self {
+            Self::Verdict { .. } => 1,
+            Self::Verify(VerifyError::Unknown { .. }) => 2,
             Self::Picture(error) if error.is_wrong_usage() => 2,
             Self::Scene(SceneError::Wrong(_))
             | Self::Override { .. }
             | Self::Window { .. }
+            | Self::TooLarge { .. }
             | Self::Report(ReportError::Viewer(PageError::Unrecorded { .. })) => 2,
-            Self::NoEquilibrium { .. } => 3,
+            Self::NoEquilibrium { .. } | Self::Ended { .. } => 3,
+            Self::Stopped { .. } => 75,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)
             | Self::Picture(_)
+            | Self::Verify(_)
             | Self::Output(_)
-            | Self::Threads(_) => 4,
+            | Self::Threads(_)
+            | Self::Signals(_) => 4,
             #[cfg(feature = "view")]
             Self::Server(_) => 4,
         })

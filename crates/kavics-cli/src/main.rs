@@ -5,17 +5,24 @@ mod check;
 mod compared;
 mod draw;
 mod draw_arguments;
+mod export;
 mod failure;
+mod limits;
 mod measure;
 mod origins;
 mod overrides;
 mod own_files;
 mod pack;
 mod pack_summary;
+mod progress;
+mod resume;
 mod run;
 mod scene_file;
+mod signals;
 mod summary;
+mod terminal;
 mod texts;
+mod verify;
 #[cfg(feature = "view")]
 mod view;
 
@@ -29,12 +36,14 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    signals::let_large_files_fail();
+    terminal::speak(arguments.loudness());
     match perform(arguments.task) {
         Ok(()) => ExitCode::SUCCESS,
         // Who stops reading, as head does, has what it wanted.
         Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
-            scene_file::say(&format!("{failure}\n"));
+            terminal::say_error(&failure.to_string());
             failure.status()
         }
     }
@@ -50,6 +59,8 @@ fn perform(task: Task) -> Result<(), Failure> {
         #[cfg(feature = "view")]
         Task::View(arguments) => view::view(&arguments),
         Task::Draw(arguments) => draw::draw(&arguments),
+        Task::Export(arguments) => export::export(&arguments),
+        Task::Verify(arguments) => verify::verify(&arguments),
         Task::Schema => texts::schema(),
         Task::Completions(arguments) => texts::completions(&arguments),
         Task::Man(arguments) => texts::man(&arguments),

@@ -4,6 +4,7 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::Scene;
+use kavics::warning::WarningKind;
 use kavics_results::{
     Recorded, ResultsFolder, RunState, StepRow, read_grains, write_steps, write_steps_csv,
 };
@@ -25,9 +26,9 @@ pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
     scene_file::show_warnings(&scene.warnings);
     if folder.record()?.state == RunState::Running {
         let last = rows.last().map_or(0, |row| row.step);
-        scene_file::show_warnings(&[format!(
+        scene_file::show_warnings(&[WarningKind::RunUnfinished.says(format_args!(
             "the run is under way or was broken off; the table ends with load step {last}"
-        )]);
+        ))]);
     }
     Ok(())
 }

@@ -2,44 +2,76 @@
 
 use std::io::{self, Write, stdout};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use kavics::equilibrium::{Equilibrium, SolveError, State};
+use kavics::loading::{LoadPath, Station};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
-use kavics_results::{Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room};
+use kavics::warning::WarningKind;
+use kavics_results::{
+    Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
+    clear_checkpoints,
+};
 
 use crate::arguments::RunArguments;
 use crate::failure::Failure;
+use crate::limits::{Estimate, bytes};
+use crate::progress::Progress;
 use crate::scene_file::say;
-use crate::{own_files, scene_file, summary};
+use crate::{own_files, resume, scene_file, signals, summary, terminal};
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
     let folder = arguments.output.clone().unwrap_or_else(usual);
-    check_room(&folder, arguments.force)?;
+    if !arguments.resume {
+        check_room(&folder, arguments.force)?;
+    }
     let threads = scene_file::start_threads(arguments.threads)?;
     let (mut scene, table) = scene_file::read(&arguments.scene)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
     scene.text = own_files::named(&scene.text, &scene.layers);
+    let began = Instant::now();
+    terminal::say_more(&opening(&scene, threads));
     let options = Options {
         threads,
         replace: arguments.force,
     };
-    let mut results = Results::create(&folder, &scene, options)?;
-    let mut lines = JsonLines::new(arguments.json);
-    let failure = follow(&scene, &mut results, &mut lines)?;
+    Estimate::of(&scene).check(arguments.any_size)?;
+    let start = if arguments.resume {
+        check_same(&folder, &scene)?;
+        if resume::is_finished(&folder)? {
+            return finished(&folder);
+        }
+        resume::go_on(&scene, &folder, options)?
+    } else {
+        resume::begin(&scene, &folder, options)?
+    };
+    let mut results = start.results;
+    signals::name_checkpoint_in_a_panic(&folder);
+    let mut follower = Follower {
+        scene: &scene,
+        window: Window::new(scene.window.clone(), scene.assembly.grains.len()),
+        results: &mut results,
+        lines: JsonLines::new(arguments.json),
+        apart: arguments.checkpoint,
+    };
+    let path = start.path.stopped_by(signals::stop_flag()?);
+    let ended = follower.follow(path)?;
+    let lines = follower.lines;
+    let (state, failure) = match ended {
+        Ended::Stopped => return stop(results, &folder),
+        Ended::Done => (RunState::Done, None),
+        Ended::NoEquilibrium(error) => (RunState::NoEquilibrium, Some(error)),
+    };
     let lone = table.map(|table| table.unmatched(results.steps()));
     for lone in lone.unwrap_or_default() {
-        results.warn(format!("compare.csv: {lone}"));
+        results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
     }
     let warnings = results.warnings();
-    let state = match failure {
-        None => RunState::Done,
-        Some(_) => RunState::NoEquilibrium,
-    };
     let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
     say(&summary::summary(&steps));
+    say(&summary::closing(&scene, &steps, state, began.elapsed()));
     scene_file::show_warnings(&warnings);
     finish_report(&folder)?;
     match failure {
@@ -52,30 +84,92 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
 }
 
-/// Pushes every equilibrium of the load path; answers why it ended early.
-fn follow(
-    scene: &Scene,
-    results: &mut Results<'_>,
-    lines: &mut JsonLines,
-) -> Result<Option<SolveError>, Failure> {
-    let window = Window::new(scene.window.clone(), scene.assembly.grains.len());
-    let bar = progress_bar(scene);
-    for equilibrium in scene.load_path() {
-        let equilibrium = match equilibrium {
-            Ok(equilibrium) => equilibrium,
-            Err(error) => {
-                bar.finish_and_clear();
-                return Ok(Some(error));
+/// What is about to be solved, and how.
+fn opening(scene: &Scene, threads: usize) -> String {
+    let unknowns = scene.load_path().unknowns();
+    let solver = if scene.settings.solver.iterates(unknowns) {
+        "iterative"
+    } else {
+        "direct"
+    };
+    format!(
+        "{unknowns} unknowns, {solver} solver, threads: {threads}, about {} of memory\n",
+        bytes(Estimate::of(scene).memory)
+    )
+}
+
+/// How a load path ended.
+enum Ended {
+    Done,
+    NoEquilibrium(SolveError),
+    Stopped,
+}
+
+/// Follows a load path, and writes what it comes to.
+struct Follower<'r, 'a> {
+    scene: &'a Scene,
+    window: Window,
+    results: &'r mut Results<'a>,
+    lines: JsonLines,
+    /// Least time between two checkpoints.
+    apart: Duration,
+}
+
+impl Follower<'_, '_> {
+    /// Pushes every equilibrium of the load path.
+    fn follow(&mut self, mut path: LoadPath<'_>) -> Result<Ended, Failure> {
+        let mut progress = Progress::new(&self.scene.program, path.watch());
+        let ended = loop {
+            match path.advance() {
+                None => break Ended::Done,
+                Some(Err(error)) => break Ended::NoEquilibrium(error),
+                Some(Ok(Station::Stopped)) => {
+                    self.checkpoint(&path)?;
+                    break Ended::Stopped;
+                }
+                Some(Ok(Station::Event)) => {}
+                Some(Ok(Station::Equilibrium(equilibrium))) => {
+                    push(self.scene, &self.window, &equilibrium, self.results)?;
+                    let broken = self.results.steps().last().map_or(0, |row| row.broken);
+                    progress.note(&equilibrium, broken);
+                    if equilibrium.step > 0 {
+                        self.lines.write(self.results.steps());
+                    }
+                }
+            }
+            if self.results.wants_checkpoint(self.apart) {
+                self.checkpoint(&path)?;
             }
         };
-        push(scene, &window, &equilibrium, results)?;
-        bar.set_position(equilibrium.step as u64);
-        if equilibrium.step > 0 {
-            lines.write(results.steps());
-        }
+        progress.end();
+        Ok(ended)
     }
-    bar.finish_and_clear();
-    Ok(None)
+
+    fn checkpoint(&mut self, path: &LoadPath<'_>) -> Result<(), Failure> {
+        if let Some(memory) = path.memory() {
+            self.results.checkpoint(memory)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ends a run that was told to stop: the tables hold all that was found, and it can go on.
+fn stop(results: Results<'_>, folder: &Path) -> Result<(), Failure> {
+    let steps = results.finish(RunState::Stopped, None)?;
+    Err(Failure::Stopped {
+        last: steps.last().map_or(0, |row| row.step),
+        folder: folder.to_owned(),
+    })
+}
+
+/// Nothing is left to do but what a run that was broken off at its very end may have left out.
+fn finished(folder: &Path) -> Result<(), Failure> {
+    say(&format!("{} is finished\n", folder.display()));
+    clear_checkpoints(folder)?;
+    if folder.join("report.html").is_file() {
+        return Ok(());
+    }
+    finish_report(folder)
 }
 
 fn push(
@@ -108,14 +202,6 @@ fn snapshot<'a>(scene: &'a Scene, equilibrium: &'a Equilibrium, state: &'a State
         loads: &equilibrium.loads,
         reactions: &equilibrium.reactions,
     }
-}
-
-/// Hidden where stderr is no terminal.
-fn progress_bar(scene: &Scene) -> ProgressBar {
-    let stages = scene.program.stages.iter();
-    let steps: usize = stages.map(|stage| stage.factors.len()).sum();
-    let style = ProgressStyle::with_template("load step {pos}/{len} {wide_bar} {eta}");
-    ProgressBar::new(steps as u64).with_style(style.expect("a template that is known to be right"))
 }
 
 /// A JSON object per load step on stdout. A stdout that takes no more does not end the run.

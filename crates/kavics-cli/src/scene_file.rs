@@ -1,15 +1,16 @@
 //! From the command line to a scene.
 
-use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
 use kavics::scene::{Pack, Scene, SceneError, read_text};
+use kavics::warning::WarningKind;
 use kavics_report::ComparedTable;
 use kavics_results::read_grains;
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
 use crate::overrides::Changed;
+pub use crate::terminal::{say, show_warnings};
 use crate::{compared, overrides, own_files};
 
 /// Reads the scene file, with what `--set` says, and the table that it is compared with.
@@ -21,7 +22,8 @@ pub fn read(arguments: &SceneArguments) -> Result<(Scene, Option<ComparedTable>)
         };
         let table = compared::read(&path, text, name)?;
         let warnings = table.warnings().iter();
-        let of_table = warnings.map(|warning| format!("compare.csv: {warning}"));
+        let of_table = warnings
+            .map(|warning| WarningKind::ComparedTable.says(format_args!("compare.csv: {warning}")));
         scene.warnings.extend(of_table);
         Ok((scene, Some(table)))
     })
@@ -78,22 +80,4 @@ pub fn start_threads(count: Option<usize>) -> Result<usize, Failure> {
     }
     pool.build_global()?;
     Ok(rayon::current_num_threads())
-}
-
-/// Writes to stderr; a stderr that nobody reads any more is no reason to stop.
-pub fn say(text: &str) {
-    let _ = stderr().write_all(text.as_bytes());
-}
-
-/// Warnings shown in full; a long run may repeat one at every load step.
-const WARNINGS_SHOWN: usize = 12;
-
-/// Shows what the user should know.
-pub fn show_warnings(warnings: &[String]) {
-    for warning in warnings.iter().take(WARNINGS_SHOWN) {
-        say(&format!("warning: {warning}\n"));
-    }
-    if let Some(more @ 1..) = warnings.len().checked_sub(WARNINGS_SHOWN) {
-        say(&format!("warning: and {more} more\n"));
-    }
 }

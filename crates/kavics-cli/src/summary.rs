@@ -1,10 +1,14 @@
 //! The table that ends a run, 80 columns wide.
 
 use std::fmt::Write;
+use std::time::Duration;
 
 use kavics::measure::{StressPartition, Tensor};
+use kavics::scene::Scene;
 use kavics_report::Comparison;
-use kavics_results::StepRow;
+use kavics_results::{RunState, StepRow};
+
+use crate::progress::time;
 
 /// Load steps shown before and after the gap, where there are more.
 const SHOWN: usize = 10;
@@ -26,6 +30,23 @@ pub fn summary(steps: &[StepRow]) -> String {
         text.push_str(&parts_table(steps, scale));
     }
     text
+}
+
+/// What the run came to, in a line or two.
+pub fn closing(scene: &Scene, steps: &[StepRow], state: RunState, took: Duration) -> String {
+    let Some(last) = steps.last() else {
+        return String::new();
+    };
+    let residual = steps.iter().map(|row| row.residual).fold(0.0, f64::max);
+    let plural = if steps.len() == 1 { "" } else { "s" };
+    format!(
+        "\n{}: {} load step{plural} in {}, {} of {} contacts broken,\nlargest residual {residual:.1e}\n",
+        state.name(),
+        steps.len(),
+        time(took.as_secs_f64()),
+        last.broken,
+        scene.assembly.contacts.len(),
+    )
 }
 
 /// How large the stresses of the run are, and the power of ten taken out of those that would not fit.
@@ -103,17 +124,30 @@ fn step_line(row: &StepRow, scale: Scale) -> String {
     let shown = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
     let scaled = |value: f64| scale.apply(value);
     format!(
-        "{:>5} {:>9.5} {:>5} {:>9.1e} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
+        "{:>5} {:>9} {:>5} {:>9.1e} {:>8} {:>7} {:>9} {:>9} {:>7}\n",
         row.step,
-        row.load_factor,
+        fitting(row.load_factor, 9),
         row.iterations,
         row.residual,
         row.contacts,
         row.broken,
         shown(stress.map(|s| scaled(s.total.xx))),
         shown(stress.map(|s| scaled(s.total.yy))),
-        shown(stress.and_then(|parts| shear_over_variation(parts, scale))),
+        (stress.and_then(|parts| shear_over_variation(parts, scale)))
+            .map_or_else(|| "-".to_owned(), |ratio| fitting(ratio, 7)),
     )
+}
+
+/// A number with as many places as fit into some columns: six in twelve, five in nine, three in fewer.
+fn fitting(value: f64, columns: usize) -> String {
+    let places = match columns {
+        10.. => 6,
+        9 => 5,
+        _ => 3,
+    };
+    let places = (0..=places).rev().map(|places| format!("{value:.places$}"));
+    let mut fitting = places.filter(|text| text.chars().count() <= columns);
+    fitting.next().unwrap_or_else(|| format!("{value:.1e}"))
 }
 
 /// The shear part over the normal variation part, by their deviators' magnitudes.
@@ -148,7 +182,9 @@ fn parts_table(steps: &[StepRow], scale: Scale) -> String {
 }
 
 fn part_lines(row: &StepRow, scale: Scale) -> String {
-    let label = format!("{} ({:.3})", row.step, row.load_factor);
+    let step = row.step.to_string();
+    let room = 11_usize.saturating_sub(step.len() + 3).max(4);
+    let label = format!("{step} ({})", fitting(row.load_factor, room.min(8)));
     let Some(parts) = row.measures.stress else {
         return format!("{label:<12}no stress: the window is empty\n");
     };
@@ -206,8 +242,12 @@ pub fn compared(comparison: &Comparison) -> String {
             let difference = value.difference();
             let _ = writeln!(
                 text,
-                "{:<24} {:>12.6} {:>12.6} {:>12.6}  {}",
-                column.name, value.run, value.compared, difference, value.label
+                "{:<24} {:>12} {:>12} {:>12}  {}",
+                column.name,
+                fitting(value.run, 12),
+                fitting(value.compared, 12),
+                fitting(difference, 12),
+                value.label
             );
         }
     }

@@ -40,6 +40,7 @@ fn every_task_has_a_help() {
         "measure",
         "report",
         "view",
+        "verify",
         "schema",
         "completions",
         "man",

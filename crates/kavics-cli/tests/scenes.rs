@@ -3,8 +3,7 @@
 mod support;
 
 use assert_cmd::Command;
-use support::tables::Tables;
-use support::{Run, workspace};
+use support::{Run, Tables, workspace};
 
 fn done(name: &str) -> Run {
     let run = Run::scene(name);
@@ -55,8 +54,7 @@ fn block_32_keeps_its_vertical_stress_and_its_symmetry() {
     }
     let last = Tables::read(&run, 5);
     let mirrored = |x: f64, y: f64| {
-        let at =
-            |c: &&support::tables::ContactRow| (c.point.0 - (10.0 - x)).hypot(c.point.1 - y) < 1e-9;
+        let at = |c: &&support::ContactRow| (c.point.0 - (10.0 - x)).hypot(c.point.1 - y) < 1e-9;
         last.contacts.iter().find(at).expect("a mirror image")
     };
     for contact in &last.contacts {

@@ -60,12 +60,16 @@ pub fn draw_curves(
         .map(|name| Quantity::read(folder, name));
     let curves = curves.collect::<Result<Vec<_>, _>>()?;
     let points: Vec<Vec<Vector>> = curves.iter().map(|curve| curve.over(&across)).collect();
+    let tens = [
+        power_of_ten(points.iter().flatten().map(|point| point.x)),
+        power_of_ten(points.iter().flatten().map(|point| point.y)),
+    ];
+    let points: Vec<Vec<Vector>> = points.iter().map(|points| scaled(points, tens)).collect();
     let mut chart = Chart::new(request, &points);
     chart.picture.title = title(folder, &across, &curves)?;
-    chart.draw_axes(
-        &across.label(&request.units),
-        &upward_label(&curves, &request.units),
-    );
+    let across = across.label(&request.units) + &times(tens[0]);
+    let upwards = upward_label(&curves, &request.units) + &times(tens[1]);
+    chart.draw_axes(across.trim_start(), upwards.trim_start());
     for (number, points) in points.iter().enumerate() {
         chart.draw_curve(points, Ink::Series(number as u8));
     }
@@ -96,6 +100,39 @@ fn title(
         names.join(", "),
         across.name
     ))
+}
+
+/// The power of ten that is taken out of numbers too small or large to be written as they are; else 0.
+fn power_of_ten(values: impl Iterator<Item = f64>) -> i32 {
+    let finite = values.filter(|value| value.is_finite());
+    let largest = finite.fold(0.0, |most: f64, value| most.max(value.abs()));
+    if largest == 0.0 || (0.01..1e5).contains(&largest) {
+        return 0;
+    }
+    largest.log10().floor() as i32
+}
+
+/// Points without the powers of ten that stand beside the axes.
+fn scaled(points: &[Vector], [across, upwards]: [i32; 2]) -> Vec<Vector> {
+    let (x, y) = (10f64.powi(-across), 10f64.powi(-upwards));
+    let point = |point: &Vector| Vector::new(point.x * x, point.y * y);
+    points.iter().map(point).collect()
+}
+
+/// A power of ten as it stands beside an axis.
+fn times(power: i32) -> String {
+    if power == 0 {
+        return String::new();
+    }
+    let raised = |digit: char| match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32(0x2070 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+    };
+    let power: String = power.to_string().chars().map(raised).collect();
+    format!(" × 10{power}")
 }
 
 /// What stands beside the upward axis: the one curve, or the dimension that all have.
@@ -329,5 +366,32 @@ impl Chart {
             Entry::Line(Ink::Series(number as u8), Pen::of(0.5), label)
         };
         curves.iter().enumerate().map(entry).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_and_large_numbers_give_a_power_of_ten() {
+        let power = |value| power_of_ten([value, f64::NAN].into_iter());
+        assert_eq!(
+            [power(3.7e-4), power(-0.5), power(99.0), power(2e6)],
+            [-4, 0, 0, 6]
+        );
+        assert_eq!(times(-14), " × 10⁻¹⁴");
+        assert_eq!(times(0), "");
+    }
+
+    #[test]
+    fn dimensions_take_the_words_of_the_user() {
+        let units = Units {
+            length: "mm".to_owned(),
+            force: "N".to_owned(),
+        };
+        assert_eq!(dimension("force/length^2", &units), "N/mm²");
+        assert_eq!(dimension("force*length", &Units::default()), "force·length");
+        assert_eq!(dimension("1", &units), "");
     }
 }

@@ -132,10 +132,10 @@ fn draw_scenery(scenery: &Scenery<'_>, request: &Request) -> Result<Picture, Pic
 }
 
 /// The load step wanted, or the last one.
-pub(crate) fn recorded_step(
-    folder: &ResultsFolder,
-    wanted: Option<usize>,
-) -> Result<usize, PictureError> {
+///
+/// # Errors
+/// A load step that is not recorded; a folder that cannot be listed.
+pub fn recorded_step(folder: &ResultsFolder, wanted: Option<usize>) -> Result<usize, PictureError> {
     let recorded = folder.recorded_steps()?;
     let found = match wanted {
         Some(step) => recorded.iter().copied().find(|&known| known == step),

@@ -46,7 +46,7 @@ pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), P
     let has_others = !others.is_empty();
     sheet
         .picture
-        .stroke(others, Ink::Idle, Pen::of(0.5 * width));
+        .stroke(others, Ink::Idle, Pen::of(0.7 * width));
     active.stroke(
         &mut sheet.picture,
         Pen {
@@ -62,7 +62,7 @@ pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), P
         }
     }
     if has_others {
-        let entry = Entry::Line(Ink::Idle, Pen::of(0.2), "edge without contact".to_owned());
+        let entry = Entry::Line(Ink::Idle, Pen::of(0.3), "edge without contact".to_owned());
         sheet.entries.push(entry);
     }
     Ok(())

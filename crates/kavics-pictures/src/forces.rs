@@ -24,19 +24,20 @@ const WIDEST_BOUNDS: [f64; 2] = [0.5, 3.0];
 /// Width of the thinnest line that is still seen, mm.
 const THINNEST: f64 = 0.03;
 
-/// Forces below this share of the largest one of the run are rounding.
+/// Forces below this share of the largest force of the run are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The largest normal force, by size, at the recorded load steps, `[force]`.
+/// The largest force that is none in a run, `[force]`: a small share of the largest normal force of a contact at the
+/// recorded load steps and of the largest force of a load or move at all of them.
 ///
 /// # Errors
 /// Tables that cannot be read.
-pub fn largest_force(folder: &ResultsFolder) -> Result<f64, PictureError> {
-    let mut largest = 0.0_f64;
+pub fn no_force(folder: &ResultsFolder) -> Result<f64, PictureError> {
+    let mut largest = largest_of(&folder.actions()?.numbers("force")?);
     for step in folder.recorded_steps()? {
         largest = largest.max(largest_of(&forces(folder, step)?));
     }
-    Ok(largest)
+    Ok(ROUNDING * largest)
 }
 
 fn forces(folder: &ResultsFolder, step: usize) -> Result<Vec<f64>, PictureError> {
@@ -66,7 +67,7 @@ struct Forces {
 impl Forces {
     fn read(sheet: &Sheet<'_>, scenery: &Scenery<'_>) -> Result<Self, PictureError> {
         let normal = forces(scenery.folder, scenery.step)?;
-        let none = ROUNDING * largest_force(scenery.folder)?;
+        let none = no_force(scenery.folder)?;
         let mut largest = sheet.request.largest.unwrap_or_else(|| largest_of(&normal));
         if largest <= none {
             largest = 0.0;
@@ -151,7 +152,7 @@ pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), P
         None => explain_signs(sheet, any),
     }
     explain_widths(sheet, &forces);
-    if has_idle {
+    if has_idle && forces.largest > 0.0 {
         let pen = Pen::of(thin.width.max(0.12));
         sheet
             .entries

@@ -44,6 +44,8 @@ pub enum ColourMap {
     Signed,
     /// From first to last (plasma, without its lightest part).
     Order,
+    /// From the background to what stands out of it (blues).
+    Depth,
 }
 
 /// Places on a colour map.
@@ -83,6 +85,8 @@ const SIGNED: [u32; 9] = [
 const SIGNED_ON_DARK: [u32; 9] = [
     0x9ad3f5, 0x58b0f0, 0x2f78b5, 0x234a6c, 0x2b3136, 0x6b4424, 0xb0652a, 0xff9350, 0xffc9a4,
 ];
+const DEPTH: [u32; 6] = [0xe9eef3, 0xbcd0e2, 0x86adcf, 0x4d86b8, 0x245b92, 0x0f2f5c];
+const DEPTH_ON_DARK: [u32; 6] = [0x232a31, 0x27445d, 0x2f668f, 0x4a8dc0, 0x82b8e2, 0xd0e7fa];
 /// Plasma, after Smith & van der Walt (2015).
 const ORDER: [u32; 8] = [
     0x0d0887, 0x41049d, 0x6a00a8, 0x8f0da4, 0xb12a90, 0xcc4778, 0xe16462, 0xf2844b,
@@ -121,6 +125,8 @@ impl Theme {
             (ColourMap::Rising, _) => &RISING,
             (ColourMap::Signed, Self::Light) => &SIGNED,
             (ColourMap::Signed, Self::Dark) => &SIGNED_ON_DARK,
+            (ColourMap::Depth, Self::Light) => &DEPTH,
+            (ColourMap::Depth, Self::Dark) => &DEPTH_ON_DARK,
             (ColourMap::Order, Self::Light) => &ORDER,
             (ColourMap::Order, Self::Dark) => &ORDER_ON_DARK,
         };

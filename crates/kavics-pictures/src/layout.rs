@@ -6,7 +6,7 @@ use kavics::equilibrium::{ContactState, Displacement, State};
 use kavics::geometry::{DualEdge, NearPair, PowerDiagram, SideEdge, Vector, power_diagram};
 use kavics::ids::{GrainId, Id, PerBody, PerContact, PerGrain, PerSide, PropertyId, SideId};
 use kavics::measure::{Snapshot, VoidCells, void_cells};
-use kavics_results::{Columns, ResultsFolder};
+use kavics_results::{Columns, ResultsError, ResultsFolder};
 
 use crate::PictureError;
 use crate::sides::{Touched, sides};
@@ -113,7 +113,7 @@ impl Layout {
     ///
     /// # Errors
     /// Tables that cannot be read or do not fit together.
-    pub fn state(&self, step: usize) -> Result<State, PictureError> {
+    pub fn state(&self, step: usize) -> Result<State, ResultsError> {
         let mut displacements =
             PerBody::filled(Displacement::default(), self.assembly.body_count());
         let grains = self
@@ -132,6 +132,26 @@ impl Layout {
             displacements,
             contacts: contacts.collect(),
         })
+    }
+
+    /// How far a partner has gone in a state; of a side, a point of it, `[length]`.
+    pub fn way(&self, state: &State, partner: Partner, at: Vector) -> Vector {
+        let Displacement { x, y, rotation } = state.displacements[self.assembly.body(partner)];
+        let arm = match partner {
+            Partner::Grain(_) => Vector::default(),
+            Partner::Side(_) => at - self.assembly.reference_point(partner),
+        };
+        Vector::new(x, y) + arm.quarter_turn() * rotation
+    }
+
+    /// Where a partner of a contact is, with displacements so many times as large: a grain's centre, or the point of
+    /// a side that the grain touches, `[length]`.
+    pub fn end(&self, state: &State, contact: &Contact, partner: Partner, times: f64) -> Vector {
+        let at = match partner {
+            Partner::Grain(grain) => self.assembly.grains[grain].centre,
+            Partner::Side(_) => contact.point,
+        };
+        at + self.way(state, partner, at) * times
     }
 
     /// The void cells in a state, numbered as in the table `voids` of the same load step.
@@ -283,7 +303,7 @@ fn ends_of_dual(contact: &Contact) -> [Vector; 2] {
 }
 
 /// Takes displacements from a table whose ids count from the first of `bodies`.
-fn take(bodies: &mut [Displacement], table: &Columns, id: &str) -> Result<(), PictureError> {
+fn take(bodies: &mut [Displacement], table: &Columns, id: &str) -> Result<(), ResultsError> {
     let ids = table.integers(id)?;
     let (x, y) = (table.numbers("ux")?, table.numbers("uy")?);
     let rotation = table.numbers("rotation")?;

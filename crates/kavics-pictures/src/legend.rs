@@ -90,7 +90,9 @@ impl Entry {
         match self {
             Self::Bar(length, label) => length + APART + words(label),
             Self::Line(_, _, label) | Self::Cross(label) => SAMPLE + APART + words(label),
-            Self::Disc(_, label) | Self::Surface(_, label) => 0.5 * SAMPLE + APART + words(label),
+            Self::Disc(_, label) => 0.5 * SAMPLE + APART + words(label),
+            // Surfaces belong to one column and stand closer.
+            Self::Surface(_, label) => 0.5 * SAMPLE + APART + words(label) - 0.4 * GAP,
             Self::Map(_, [low, high], title) => {
                 let title = if title.is_empty() {
                     0.0
@@ -117,7 +119,7 @@ impl Entry {
                 word(picture, right(length + APART), label);
             }
             Self::Line(ink, pen, label) => {
-                let line = Shape::Line([right(0.5 * pen.width), right(SAMPLE - 0.5 * pen.width)]);
+                let line = Shape::Line([at, right(SAMPLE)]);
                 picture.stroke(vec![line], *ink, *pen);
                 word(picture, right(SAMPLE + APART), label);
             }

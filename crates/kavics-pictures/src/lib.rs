@@ -32,9 +32,9 @@ mod write;
 
 pub use breaks::{Break, breaks};
 pub use curves::{CurveRequest, draw_curves};
-pub use draw::{Request, What, draw};
+pub use draw::{Request, What, draw, recorded_step};
 pub use error::PictureError;
-pub use forces::largest_force;
+pub use forces::no_force;
 pub use ink::{ColourMap, Ink, SHADES, Theme};
 pub use layout::{Layout, container};
 pub use legend::Units;

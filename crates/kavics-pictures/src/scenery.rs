@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use kavics::assembly::{Contact, Grain, Partner};
-use kavics::equilibrium::{ContactState, Displacement, State};
+use kavics::equilibrium::{ContactState, State};
 use kavics::geometry::Vector;
 use kavics::ids::{ContactId, GrainId, Id, SideId};
 use kavics_results::ResultsFolder;
@@ -70,17 +70,13 @@ impl<'a> Scenery<'a> {
     }
 
     fn centre(&self, grain: GrainId) -> Vector {
-        self.layout.assembly.grains[grain].centre + self.way(Partner::Grain(grain), None)
+        let centre = self.layout.assembly.grains[grain].centre;
+        centre + self.way(Partner::Grain(grain), centre)
     }
 
     /// How far a partner has gone as it is drawn; of a side, a point of it.
-    fn way(&self, partner: Partner, at: Option<Vector>) -> Vector {
-        let assembly = &self.layout.assembly;
-        let Displacement { x, y, rotation } = self.state.displacements[assembly.body(partner)];
-        let arm = at.map_or(Vector::default(), |at| {
-            at - assembly.reference_point(partner)
-        });
-        (Vector::new(x, y) + arm.quarter_turn() * rotation) * self.times
+    fn way(&self, partner: Partner, at: Vector) -> Vector {
+        self.layout.way(&self.state, partner, at) * self.times
     }
 
     /// What a contact is.
@@ -100,21 +96,16 @@ impl<'a> Scenery<'a> {
 
     /// From centre to centre, or from the centre to the side.
     pub fn branch(&self, contact: &Contact) -> [Vector; 2] {
-        let end = |partner| match partner {
-            Partner::Grain(grain) => self.centres[grain.index()],
-            Partner::Side(_) => contact.point + self.way(partner, Some(contact.point)),
-        };
+        let end = |partner| self.layout.end(&self.state, contact, partner, self.times);
         [end(contact.first), end(contact.second)]
     }
 
-    /// The dual edge, moved with the mean of its partners.
+    /// The dual edge, moved with the mean of its partners, or with the side.
     pub fn dual(&self, contact: &Contact, ends: [Vector; 2]) -> [Vector; 2] {
+        let way = |partner| self.way(partner, contact.point);
         let mean = match contact.second {
-            Partner::Grain(_) => {
-                let ways = [contact.first, contact.second].map(|grain| self.way(grain, None));
-                (ways[0] + ways[1]) * 0.5
-            }
-            side @ Partner::Side(_) => self.way(side, Some(contact.point)),
+            Partner::Grain(_) => (way(contact.first) + way(contact.second)) * 0.5,
+            Partner::Side(_) => way(contact.second),
         };
         ends.map(|end| end + mean)
     }
@@ -124,7 +115,7 @@ impl<'a> Scenery<'a> {
         let sides = self.layout.assembly.sides.iter();
         sides.map(|(id, side): (SideId, _)| {
             let ends = [side.start, side.end];
-            let moved = ends.map(|end| end + self.way(Partner::Side(id), Some(end)));
+            let moved = ends.map(|end| end + self.way(Partner::Side(id), end));
             (moved, side.present)
         })
     }

@@ -96,7 +96,7 @@ fn by_order(cells: &[VoidCell]) -> Colouring {
     let class = |cell: &VoidCell| cell.order.saturating_sub(3).min(ORDERS - 1);
     let ink = |class: usize| {
         let shade = class * usize::from(SHADES - 1) / (ORDERS - 1);
-        Ink::Shade(ColourMap::Rising, shade as u8)
+        Ink::Shade(ColourMap::Depth, shade as u8)
     };
     let name = |class: usize| match class {
         5 => "8 and more".to_owned(),

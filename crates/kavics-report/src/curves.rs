@@ -1,5 +1,7 @@
 //! Which curves the report shows.
 
+use std::collections::HashMap;
+
 use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
@@ -9,6 +11,9 @@ use crate::{ReportError, energy, moduli, packing};
 
 /// Loads and moves with a curve of their own.
 const ACTIONS_SHOWN: usize = 6;
+
+/// Events on a curve, at most: of more every so many-th is drawn.
+const EVENTS_DRAWN: usize = 20_000;
 
 /// A plot with its heading and legend.
 #[derive(Clone, Debug, Serialize)]
@@ -80,9 +85,10 @@ pub(crate) fn groups(folder: &ResultsFolder, steps: &Columns) -> Result<Vec<Grou
         Group {
             heading: "Load and displacement",
             note: "For a load: its whole force over the mean displacement, in its direction, of what it acts on. \
-                   For a move: the reaction over the displacement.",
+                   For a move: the reaction over the displacement. Where bonds break event by event, through \
+                   every event.",
             pairs: false,
-            figures: load_displacement(&folder.actions()?)?,
+            figures: load_displacement(&folder.actions()?, &folder.events()?)?,
         },
         Group {
             heading: "Contacts",
@@ -153,25 +159,41 @@ pub(crate) fn legend(series: &[Series]) -> Vec<LegendEntry> {
     series.iter().map(entry).collect()
 }
 
-fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
+fn load_displacement(actions: &Columns, events: &Columns) -> Result<Vec<Figure>, ReportError> {
     let names = actions.texts("action")?;
-    let displacement = actions.numbers("displacement")?;
-    let force = actions.numbers("force")?;
+    let rows = [
+        actions.numbers("step")?,
+        actions.numbers("displacement")?,
+        actions.numbers("force")?,
+    ];
     let mut distinct: Vec<&str> = Vec::new();
     for &name in &names {
         if !distinct.contains(&name) {
             distinct.push(name);
         }
     }
-    let curve = |name: &str| Series {
-        name: name.to_owned(),
-        points: (0..names.len())
-            .filter(|&row| names[row] == name)
-            .map(|row| (displacement[row], force[row]))
-            .collect(),
-        colour: 0,
-        dashed: false,
-        marked: true,
+    let driven = driven_steps(actions)?;
+    let breaks = breaks(events)?;
+    let curve = |name: &str| {
+        let mut points = Vec::new();
+        let mut through_events = false;
+        for row in (0..names.len()).filter(|&row| names[row] == name) {
+            let step = Some(rows[0][row] as i64);
+            if driven.get(&step) == Some(&name) {
+                let on_the_way = breaks.iter().filter(|(at, _)| *at == step);
+                let before = points.len();
+                points.extend(on_the_way.map(|(_, point)| *point));
+                through_events |= points.len() > before;
+            }
+            points.push((rows[1][row], rows[2][row]));
+        }
+        Series {
+            name: name.to_owned(),
+            points,
+            colour: 0,
+            dashed: false,
+            marked: !through_events,
+        }
     };
     Ok(distinct
         .into_iter()
@@ -180,6 +202,40 @@ fn load_displacement(actions: &Columns) -> Result<Vec<Figure>, ReportError> {
         .take(ACTIONS_SHOWN)
         .map(|series| figure(&series.name.clone(), "displacement", "force", &[series]))
         .collect())
+}
+
+/// The load steps in which one action alone changes its factor, and which.
+fn driven_steps(actions: &Columns) -> Result<HashMap<Option<i64>, &str>, ReportError> {
+    let names = actions.texts("action")?;
+    let (steps, factors) = (actions.integers("step")?, actions.numbers("factor")?);
+    let mut last: HashMap<&str, f64> = HashMap::new();
+    let mut changed: HashMap<Option<i64>, Vec<&str>> = HashMap::new();
+    for ((&name, &step), &factor) in names.iter().zip(&steps).zip(&factors) {
+        if last
+            .insert(name, factor)
+            .is_some_and(|before| before != factor)
+        {
+            changed.entry(step).or_default().push(name);
+        }
+    }
+    let alone = changed.into_iter().filter(|(_, names)| names.len() == 1);
+    Ok(alone.map(|(step, names)| (step, names[0])).collect())
+}
+
+/// Load step, displacement and force of the breaks that tell them.
+fn breaks(events: &Columns) -> Result<Vec<(Option<i64>, (f64, f64))>, ReportError> {
+    if !events.names().contains(&"displacement") {
+        return Ok(Vec::new());
+    }
+    let steps = events.integers("step")?;
+    let points = events
+        .numbers("displacement")?
+        .into_iter()
+        .zip(events.numbers("force")?);
+    let told = steps.into_iter().zip(points);
+    let told: Vec<_> = told.filter(|(_, (d, _))| !d.is_nan()).collect();
+    let every = told.len().div_ceil(EVENTS_DRAWN).max(1);
+    Ok(told.into_iter().step_by(every).collect())
 }
 
 pub(crate) fn column(

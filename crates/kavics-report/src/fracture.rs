@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::ReportError;
 use crate::curves::{Figure, figure};
 use crate::fracture_picture;
+use crate::left_out::or_note;
 use crate::number::show;
 use crate::page::Table;
 use crate::plot::Series;
@@ -125,16 +126,21 @@ impl Breaks {
 }
 
 /// What broke in the run, drawn at its last recorded load step.
-pub(crate) fn fracture(folder: &ResultsFolder, events: &Columns) -> Result<Fracture, ReportError> {
+pub(crate) fn fracture(
+    folder: &ResultsFolder,
+    events: &Columns,
+    left_out: &mut Vec<String>,
+) -> Result<Fracture, ReportError> {
     let breaks = Breaks::read(events)?;
     let recorded = folder.recorded_steps()?.pop();
     let Some(step) = recorded.filter(|_| !breaks.contact.is_empty()) else {
         return Ok(Fracture::default());
     };
     let cracks = folder.cracks(step)?;
+    let picture = fracture_picture::draw(folder, step, &breaks.contact);
     Ok(Fracture {
         step,
-        picture: fracture_picture::draw(folder, step, &breaks.contact)?,
+        picture: or_note("picture of the breaks", picture, left_out)?,
         note: breaks.note(),
         figures: breaks.figures(),
         crack_count: cracks.as_ref().map_or(0, Columns::len),

@@ -11,6 +11,7 @@ mod error;
 mod fracture;
 mod fracture_picture;
 mod graph;
+mod left_out;
 mod modes;
 mod moduli;
 mod packing;

@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::curves::{Group, groups};
 use crate::fracture::{Fracture, fracture};
 use crate::graph;
+use crate::left_out::or_note;
 use crate::modes::{Modes, modes};
 use crate::moduli;
 use crate::number::{brief, fixed, show};
@@ -49,6 +50,7 @@ struct Page {
     comparison: Option<Comparison>,
     compared: Vec<ComparedRow>,
     scene: String,
+    left_out: Vec<String>,
 }
 
 /// A picture of the contact graph.
@@ -100,7 +102,9 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
     let record = folder.record()?;
     let steps = folder.steps()?;
     let events = folder.events()?;
-    let (pictures, largest) = pictures(folder, &record, &steps, &events)?;
+    let mut left_out = Vec::new();
+    let pictures = pictures(folder, &record, &steps, &events);
+    let (pictures, largest) = or_note("contact graph", pictures, &mut left_out)?;
     let comparison = Comparison::read(folder)?;
     let mut environment = Environment::new();
     environment.add_template("report.html", include_str!("report.html"))?;
@@ -110,10 +114,10 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         pictures,
         large: record.grains > LARGE,
         largest: show(largest),
-        fracture: fracture(folder, &events)?,
+        fracture: fracture(folder, &events, &mut left_out)?,
         groups: groups(folder, &steps)?,
         moduli: moduli::table(&steps)?,
-        modes: modes(folder)?,
+        modes: or_note("modes", modes(folder), &mut left_out)?,
         parts: parts(&steps)?,
         steps: steps_table(&steps)?,
         sides: sides_table(folder)?,
@@ -122,6 +126,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
         comparison,
         scene: folder.scene()?,
         record,
+        left_out,
     };
     let template = environment.get_template("report.html")?;
     Ok(template.render(Serde(page))?)

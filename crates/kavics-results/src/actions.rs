@@ -75,6 +75,19 @@ impl Actions {
         actions
     }
 
+    /// The factors so far.
+    pub(crate) fn factors(&self) -> &[f64] {
+        &self.factors
+    }
+
+    /// The same actions at given factors; none for another number of actions.
+    pub(crate) fn at(self, factors: &[f64]) -> Option<Self> {
+        (factors.len() == self.factors.len()).then(|| Self {
+            factors: factors.to_vec(),
+            ..self
+        })
+    }
+
     /// The rows of the load step that `equilibrium` ends.
     pub(crate) fn rows(&mut self, program: &Program, equilibrium: &Equilibrium) -> Vec<ActionRow> {
         if let (1.., Some(stage)) = (equilibrium.step, program.stages.get(equilibrium.stage)) {

@@ -7,7 +7,9 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array, Int64Array, StringArray};
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float64Type, Int64Type};
+use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use atomic_write_file::AtomicWriteFile;
 use parquet::arrow::ArrowWriter;
@@ -24,24 +26,23 @@ use crate::column::{Column, Read};
 /// Rows that are encoded together: few enough that long tables need little memory beside their file.
 const ROWS_A_GROUP: usize = 1 << 16;
 
-/// Writes rows as a Parquet file, the same bytes for the same rows; `some` gives those of a range. Columns are encoded
-/// side by side.
-fn encode<R: Sync, G: AsRef<[R]>>(
+/// Writes rows as a Parquet file, the same bytes for the same rows; `some` gives the values of a column in a range of
+/// them. Columns are encoded side by side.
+fn encode<R: Sync, F: Fn(usize) -> ArrayRef + Sync>(
     path: &Path,
     to: impl Write + Send,
     columns: &[Column<R>],
     count: usize,
-    some: impl Fn(Range<usize>) -> G,
+    some: impl Fn(Range<usize>) -> F,
 ) -> Result<(), ResultsError> {
-    let fields: Vec<Field> = columns.iter().map(field).collect();
-    let schema = Arc::new(Schema::new(fields));
+    let schema = schema(columns);
     let write = || {
         let writer = ArrowWriter::try_new(to, Arc::clone(&schema), Some(properties(columns)))?;
         let (mut file, factory) = writer.into_serialized_writer()?;
         for (number, first) in (0..count).step_by(ROWS_A_GROUP).enumerate() {
-            let rows = some(first..count.min(first + ROWS_A_GROUP));
+            let values = some(first..count.min(first + ROWS_A_GROUP));
             let writers = factory.create_column_writers(number)?;
-            let chunks = encoded_columns(columns, &schema, rows.as_ref(), writers)?;
+            let chunks = encoded_columns(&schema, values, writers)?;
             let mut group = file.next_row_group()?;
             for chunk in chunks {
                 chunk.append_to_row_group(&mut group)?;
@@ -54,17 +55,16 @@ fn encode<R: Sync, G: AsRef<[R]>>(
 }
 
 /// The columns of some rows, each encoded.
-fn encoded_columns<R: Sync>(
-    columns: &[Column<R>],
+fn encoded_columns(
     schema: &Schema,
-    rows: &[R],
+    values: impl Fn(usize) -> ArrayRef + Sync,
     writers: Vec<ArrowColumnWriter>,
 ) -> Result<Vec<ArrowColumnChunk>, ParquetError> {
-    let tasks = columns.par_iter().zip(schema.fields().par_iter());
+    let tasks = schema.fields().par_iter().enumerate();
     tasks
         .zip(writers)
         .map(|((column, field), mut writer)| {
-            for leaf in compute_leaves(field, &array(column, rows))? {
+            for leaf in compute_leaves(field, &values(column))? {
                 writer.write(&leaf)?;
             }
             writer.close()
@@ -82,11 +82,36 @@ fn field<R>(column: &Column<R>) -> Field {
     Field::new(&column.name, kind, true).with_metadata(unit)
 }
 
-fn array<R>(column: &Column<R>, rows: &[R]) -> ArrayRef {
+/// The schema of a table.
+pub(crate) fn schema<R>(columns: &[Column<R>]) -> Arc<Schema> {
+    let fields: Vec<Field> = columns.iter().map(field).collect();
+    Arc::new(Schema::new(fields))
+}
+
+/// The values of a column.
+pub(crate) fn array<R>(column: &Column<R>, rows: &[R]) -> ArrayRef {
     match &column.read {
         Read::Integer(read) => Arc::new(rows.iter().map(read).collect::<Int64Array>()),
         Read::Number(read) => Arc::new(rows.iter().map(read).collect::<Float64Array>()),
         Read::Text(read) => Arc::new(rows.iter().map(read).collect::<StringArray>()),
+    }
+}
+
+/// The values of a column of which the first stand in an array already, made for a column of the same kind.
+pub(crate) fn array_after<R>(column: &Column<R>, first: &dyn Array, rows: &[R]) -> ArrayRef {
+    match &column.read {
+        Read::Integer(read) => {
+            let first = first.as_primitive::<Int64Type>().iter();
+            Arc::new(first.chain(rows.iter().map(read)).collect::<Int64Array>())
+        }
+        Read::Number(read) => {
+            let first = first.as_primitive::<Float64Type>().iter();
+            Arc::new(first.chain(rows.iter().map(read)).collect::<Float64Array>())
+        }
+        Read::Text(read) => {
+            let first = first.as_string::<i32>().iter();
+            Arc::new(first.chain(rows.iter().map(read)).collect::<StringArray>())
+        }
     }
 }
 
@@ -145,7 +170,10 @@ pub fn publish(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
 }
 
 /// The same for a file that `write` writes.
-fn publish_by(
+///
+/// # Errors
+/// Those of `write`; a file that cannot be written.
+pub fn publish_by(
     path: &Path,
     write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ResultsError>,
 ) -> Result<(), ResultsError> {
@@ -176,11 +204,38 @@ pub(crate) fn publish_table<R: Sync>(
 }
 
 /// Encodes and publishes rows of which only some stand in memory at a time: `some` gives those of a range.
-pub(crate) fn publish_rows<R: Sync, G: AsRef<[R]>>(
+pub(crate) fn publish_rows<R: Sync, G: AsRef<[R]> + Sync>(
     path: &Path,
     columns: &[Column<R>],
     count: usize,
     some: impl Fn(Range<usize>) -> G,
 ) -> Result<(), ResultsError> {
-    publish_by(path, |file| encode(path, file, columns, count, some))
+    let values = |range| {
+        let rows = some(range);
+        move |column: usize| array(&columns[column], rows.as_ref())
+    };
+    publish_by(path, |file| encode(path, file, columns, count, values))
+}
+
+/// Encodes and publishes rows that come after others, which are encoded already.
+pub(crate) fn publish_after<R: Sync>(
+    path: &Path,
+    columns: &[Column<R>],
+    before: Option<&RecordBatch>,
+    rows: &[R],
+) -> Result<(), ResultsError> {
+    let Some(before) = before else {
+        return publish_table(path, columns, rows);
+    };
+    let first = before.num_rows();
+    let values = |range: Range<usize>| {
+        let [start, end] = [range.start, range.end].map(|row| row.min(first));
+        let rows = &rows[range.start.max(first) - first..range.end.max(first) - first];
+        move |column: usize| {
+            let part = before.column(column).slice(start, end - start);
+            array_after(&columns[column], part.as_ref(), rows)
+        }
+    };
+    let count = first + rows.len();
+    publish_by(path, |file| encode(path, file, columns, count, values))
 }

@@ -69,7 +69,7 @@ pub enum ResultsError {
         source: serde_json::Error,
     },
     /// A table lacks a column.
-    #[error("{}: no column is called \"{column}\"", path.display())]
+    #[error("{}: no column is called \"{column}\"; [record] of the scene says which columns there are", path.display())]
     NoColumn {
         /// The file.
         path: PathBuf,
@@ -97,6 +97,87 @@ pub enum ResultsError {
         found: usize,
         /// Rows that the scene makes.
         expected: usize,
+    },
+    /// The run to go on with was of another scene.
+    #[error(
+        "{}: the scene has changed since the run began, at line {line} of its scene.toml\n  then: {ran}\n  now:  {now}\n\
+         a run goes on with the scene that it began with; --force begins it anew",
+        folder.display()
+    )]
+    SceneChanged {
+        /// Results folder.
+        folder: PathBuf,
+        /// The first line that differs, from 1.
+        line: usize,
+        /// That line when the run began.
+        ran: String,
+        /// That line now.
+        now: String,
+    },
+    /// The run to go on with had other grains or contacts.
+    #[error(
+        "{}: the scene is the same, but its grains or contacts are not those of the run, which kavics {version} began: \
+         a file that the scene reads has changed, or they are made in another way now; --force begins it anew",
+        folder.display()
+    )]
+    OtherAssembly {
+        /// Results folder.
+        folder: PathBuf,
+        /// The version that began it.
+        version: String,
+    },
+    /// A checkpoint is damaged.
+    #[error("{}: {reason}", path.display())]
+    Damaged {
+        /// The checkpoint.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// No checkpoint can be used.
+    #[error(
+        "{reasons}\n{}: no checkpoint is whole; the tables are as they were, --force begins the run anew",
+        folder.display()
+    )]
+    NoCheckpoint {
+        /// Results folder.
+        folder: PathBuf,
+        /// What is wrong with each.
+        reasons: String,
+    },
+    /// A checkpoint means something that this version does not know.
+    #[error(
+        "{}: a checkpoint of version {found}, which kavics {version} wrote; kavics {} reads version {}",
+        path.display(), env!("CARGO_PKG_VERSION"), crate::CHECKPOINT_VERSION
+    )]
+    CheckpointVersion {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+        /// The version of kavics that wrote it.
+        version: String,
+    },
+    /// A checkpoint does not fit the scene.
+    #[error("{}: the checkpoint cannot be gone on from: {source}", folder.display())]
+    Memory {
+        /// Results folder.
+        folder: PathBuf,
+        /// Why.
+        source: kavics::equilibrium::MemoryError,
+    },
+    /// The tables were written by a later version.
+    #[error(
+        "{} holds tables of version {found}, written by kavics {version}; this is kavics {}, which reads them up to version {}",
+        folder.display(), env!("CARGO_PKG_VERSION"), crate::SCHEMA_VERSION
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// Version of its tables.
+        found: u32,
+        /// The kavics that wrote them.
+        version: String,
     },
     /// Results lack a table.
     #[error("{} is missing: the results are not whole", path.display())]
@@ -128,12 +209,14 @@ impl ResultsError {
         }
     }
 
-    pub(crate) fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+    /// A file that could not be read.
+    pub fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Unreadable { path, source }
     }
 
-    pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+    /// A file that could not be written.
+    pub fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Unwritable { path, source }
     }

@@ -94,5 +94,11 @@ pub(crate) fn event_columns() -> Vec<Column<EventRow>> {
         Column::maybe_integer("avalanche", |r: &EventRow| {
             r.event.avalanche.map(|number| number as i64)
         }),
+        Column::maybe_number("displacement", Unit::Length, |r: &EventRow| {
+            r.event.drive.map(|drive| drive.displacement)
+        }),
+        Column::maybe_number("force", Unit::Force, |r: &EventRow| {
+            r.event.drive.map(|drive| drive.force)
+        }),
     ]
 }

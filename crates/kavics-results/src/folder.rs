@@ -11,9 +11,11 @@ use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, Schema, SchemaRef};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use serde::Deserialize;
 
 use crate::ResultsError;
-use crate::record::{RunRecord, RunState};
+use crate::chosen_columns::unchanging;
+use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
 
 /// A table read back, column by column.
@@ -23,6 +25,8 @@ pub struct Columns {
     schema: SchemaRef,
     batches: Vec<RecordBatch>,
     rows: usize,
+    /// Columns that this table leaves out since they stand in the table before loading.
+    unchanging: Option<Box<Columns>>,
 }
 
 impl Columns {
@@ -83,7 +87,19 @@ impl Columns {
             schema,
             batches,
             rows,
+            unchanging: None,
         })
+    }
+
+    /// The columns of rows that stand in memory; `path` is for messages.
+    pub(crate) fn of(path: &Path, rows: RecordBatch) -> Self {
+        Self {
+            path: path.to_owned(),
+            schema: rows.schema(),
+            rows: rows.num_rows(),
+            batches: vec![rows],
+            unchanging: None,
+        }
     }
 
     /// What the columns are called and hold; their units stand in the metadata of the fields under `unit`.
@@ -100,6 +116,18 @@ impl Columns {
     pub fn names(&self) -> Vec<&str> {
         let fields = self.schema.fields().iter();
         fields.map(|field| field.name().as_str()).collect()
+    }
+
+    /// Whether a column holds counts or ids.
+    pub fn is_whole(&self, column: &str) -> bool {
+        let field = self.schema.field_with_name(column);
+        field.is_ok_and(|field| *field.data_type() == DataType::Int64)
+    }
+
+    /// Whether a column holds words.
+    pub fn is_text(&self, column: &str) -> bool {
+        let field = self.schema.field_with_name(column);
+        field.is_ok_and(|field| *field.data_type() == DataType::Utf8)
     }
 
     /// The dimension of a column, as in the metadata of its field; none where there is no such column.
@@ -161,6 +189,9 @@ impl Columns {
         read: impl Fn(&'a dyn Array) -> Option<Vec<T>>,
     ) -> Result<Vec<T>, ResultsError> {
         if self.schema.field_with_name(column).is_err() {
+            if let Some(unchanging) = &self.unchanging {
+                return unchanging.gather(column, wanted, read);
+            }
             return Err(ResultsError::NoColumn {
                 path: self.path.clone(),
                 column: column.to_owned(),
@@ -218,6 +249,13 @@ impl TableHead {
     }
 }
 
+/// What every version of `run.json` begins with.
+#[derive(Deserialize)]
+struct Head {
+    version: String,
+    schema_version: u32,
+}
+
 /// A results folder, read only.
 #[derive(Clone, Debug)]
 pub struct ResultsFolder {
@@ -260,7 +298,19 @@ impl ResultsFolder {
     pub fn record(&self) -> Result<RunRecord, ResultsError> {
         let path = self.path.join("run.json");
         let text = self.text("run.json")?;
-        serde_json::from_str(&text).map_err(|source| ResultsError::Json { path, source })
+        let not_json = |source| ResultsError::Json {
+            path: path.clone(),
+            source,
+        };
+        let head: Head = serde_json::from_str(&text).map_err(not_json)?;
+        if head.schema_version > SCHEMA_VERSION {
+            return Err(ResultsError::OtherVersion {
+                folder: self.path.clone(),
+                found: head.schema_version,
+                version: head.version,
+            });
+        }
+        serde_json::from_str(&text).map_err(not_json)
     }
 
     /// The scene as it ran.
@@ -320,7 +370,7 @@ impl ResultsFolder {
     /// # Errors
     /// A table that cannot be read.
     pub fn some_of_grains(&self, step: usize, names: &[&str]) -> Result<Columns, ResultsError> {
-        Columns::read_some(&recorded_path(&self.path, "grains", step), Some(names))
+        self.recorded_some("grains", step, Some(names))
     }
 
     /// Some columns of the table `contacts` at a recorded load step.
@@ -328,7 +378,7 @@ impl ResultsFolder {
     /// # Errors
     /// A table that cannot be read.
     pub fn some_of_contacts(&self, step: usize, names: &[&str]) -> Result<Columns, ResultsError> {
-        Columns::read_some(&recorded_path(&self.path, "contacts", step), Some(names))
+        self.recorded_some("contacts", step, Some(names))
     }
 
     /// The table `contacts` at a recorded load step.
@@ -417,7 +467,27 @@ impl ResultsFolder {
     }
 
     fn recorded(&self, table: &str, step: usize) -> Result<Columns, ResultsError> {
-        Columns::read(&recorded_path(&self.path, table, step))
+        self.recorded_some(table, step, None)
+    }
+
+    /// A recorded table; what the scene leaves out of it and does not change is taken from before loading.
+    fn recorded_some(
+        &self,
+        table: &str,
+        step: usize,
+        names: Option<&[&str]>,
+    ) -> Result<Columns, ResultsError> {
+        let mut columns = Columns::read_some(&recorded_path(&self.path, table, step), names)?;
+        let known = columns.names();
+        let mut missing = unchanging(table).to_vec();
+        missing.retain(|name| !known.contains(name) && names.is_none_or(|n| n.contains(name)));
+        if step > 0 && !missing.is_empty() {
+            let before = recorded_path(&self.path, table, 0);
+            let unchanging = Columns::read_some(&before, Some(&missing))?;
+            let whole = unchanging.len() == columns.len();
+            columns.unchanging = whole.then(|| Box::new(unchanging));
+        }
+        Ok(columns)
     }
 
     fn recorded_or_none(&self, table: &str, step: usize) -> Result<Option<Columns>, ResultsError> {

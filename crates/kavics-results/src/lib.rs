@@ -4,6 +4,9 @@
 //! metadata, and the same tables read back by column name. No mechanics is computed here.
 
 mod actions;
+mod checkpoint;
+mod checkpoint_file;
+mod chosen_columns;
 mod column;
 mod contacts;
 mod cracks;
@@ -22,6 +25,7 @@ mod packing_record;
 mod record;
 mod recorded;
 mod results;
+mod resume;
 mod room;
 mod sides;
 mod stability;
@@ -30,10 +34,13 @@ mod voids;
 mod warning;
 
 pub use actions::ActionRow;
+pub use checkpoint::{
+    CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, check_same, clear_checkpoints,
+};
 pub use column::{Column, Unit};
 pub use contacts::ContactRow;
 pub use cracks::CrackRow;
-pub use encode::publish;
+pub use encode::{publish, publish_by};
 pub use error::ResultsError;
 pub use events::EventRow;
 pub use folder::{Columns, ResultsFolder, TableHead};
@@ -44,7 +51,7 @@ pub use packing_record::{CurveRecord, MassRecord, PackingRecord};
 pub use record::{RunRecord, RunState, SCHEMA_VERSION};
 pub use recorded::Recorded;
 pub use results::{Options, Results};
-pub use room::{check_apart, check_room};
+pub use room::{check_apart, check_room, clear_unfinished};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
 pub use voids::VoidRow;

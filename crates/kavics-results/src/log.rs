@@ -31,6 +31,20 @@ impl Log {
         log
     }
 
+    /// Goes on with the lines of an earlier log.
+    pub(crate) fn resume(earlier: String, step: usize) -> Self {
+        let mut log = Self {
+            opened: Instant::now(),
+            text: earlier,
+        };
+        // A line that was cut off stays as it is.
+        if !log.text.is_empty() && !log.text.ends_with('\n') {
+            log.text.push('\n');
+        }
+        log.add("resumed", Some(step), None);
+        log
+    }
+
     pub(crate) fn note(&mut self, what: &str) {
         self.add(what, None, None);
     }

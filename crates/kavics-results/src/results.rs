@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use arrow_array::RecordBatch;
 use kavics::assembly::{Partner, Side};
 use kavics::equilibrium::{Equilibrium, EventKind, Iterate, Load, State};
 use kavics::ids::{BodyId, ContactId, GrainId, Id, PerBody, PerGrain, SideId};
@@ -13,9 +14,11 @@ use kavics::scene::Scene;
 
 use crate::ResultsError;
 use crate::actions::{ActionRow, Actions, action_columns};
+use crate::checkpoint::clear_checkpoints;
+use crate::chosen_columns::retain;
 use crate::contacts::{ContactRow, contact_columns};
 use crate::cracks::{crack_columns, crack_rows};
-use crate::encode::{publish, publish_rows, publish_table};
+use crate::encode::{publish, publish_after, publish_rows, publish_table};
 use crate::events::{EventRow, event_columns};
 use crate::folder::recorded_path;
 use crate::grains::{GrainRow, grain_columns};
@@ -27,7 +30,7 @@ use crate::room::{CRACKS, MODES, RECORDED, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
-use crate::warning::SolverWarnings;
+use crate::warning::{SolverWarnings, without_moduli};
 
 /// Tables that grow are written again at most this often.
 const BETWEEN_WRITES: Duration = Duration::from_millis(500);
@@ -47,21 +50,47 @@ pub struct Options {
 /// contacts or sides is written when its load step is pushed.
 #[derive(Debug)]
 pub struct Results<'a> {
-    scene: &'a Scene,
-    folder: PathBuf,
+    pub(crate) scene: &'a Scene,
+    pub(crate) folder: PathBuf,
     record: RunRecord,
-    steps: Vec<StepRow>,
-    iterates: Vec<StepRow>,
-    events: Vec<EventRow>,
-    actions: Actions,
-    action_rows: Vec<ActionRow>,
-    broken: usize,
+    pub(crate) steps: Vec<StepRow>,
+    pub(crate) iterates: Vec<StepRow>,
+    pub(crate) events: Vec<EventRow>,
+    pub(crate) actions: Actions,
+    pub(crate) action_rows: Vec<ActionRow>,
+    pub(crate) broken: usize,
     held: PerGrain<bool>,
     in_window: PerGrain<bool>,
     unrecorded: Option<(Equilibrium, PerGrain<Tensor>)>,
-    solver_warnings: SolverWarnings,
-    log: Log,
+    pub(crate) solver_warnings: SolverWarnings,
+    pub(crate) log: Log,
+    /// Load steps whose moduli were asked for and do not exist.
+    pub(crate) without_moduli: Vec<usize>,
     written: Instant,
+    /// Rows that an earlier run of the same results wrote.
+    pub(crate) before: Before,
+    pub(crate) checkpoints: Checkpoints,
+}
+
+/// Rows of the growing tables that an earlier run wrote.
+#[derive(Debug, Default)]
+pub(crate) struct Before {
+    pub steps: Option<RecordBatch>,
+    pub iterations: Option<RecordBatch>,
+    pub events: Option<RecordBatch>,
+    pub actions: Option<RecordBatch>,
+}
+
+/// How many rows stand in a table already.
+pub(crate) fn rows(before: Option<&RecordBatch>) -> usize {
+    before.map_or(0, RecordBatch::num_rows)
+}
+
+/// When a checkpoint was written last, and what it cost.
+#[derive(Debug)]
+pub(crate) struct Checkpoints {
+    pub written: Instant,
+    pub cost: Duration,
 }
 
 impl<'a> Results<'a> {
@@ -72,16 +101,38 @@ impl<'a> Results<'a> {
     /// written.
     pub fn create(folder: &Path, scene: &'a Scene, options: Options) -> Result<Self, ResultsError> {
         make_room(folder, options.replace)?;
+        fs::create_dir_all(folder).map_err(ResultsError::unwritable(folder))?;
+        let results = Self::new(folder, scene, options);
+        // First of all, so that the folder is known for what it is.
+        results.write_record()?;
+        results.make_folders()?;
+        publish(&folder.join("scene.toml"), scene.text.as_bytes())?;
+        if let Some(compared) = &scene.compare {
+            let table = fs::read(compared).map_err(ResultsError::unreadable(compared))?;
+            publish(&folder.join("compare.csv"), &table)?;
+        }
+        results.write_growing()?;
+        Ok(results)
+    }
+
+    /// Makes the folders of the tables that are recorded.
+    pub(crate) fn make_folders(&self) -> Result<(), ResultsError> {
+        let scene = self.scene;
         let asked_for = [
             scene.record_voids.then_some(VOIDS),
             scene.record_cracks.then_some(CRACKS),
             (scene.settings.modes > 0).then_some(MODES),
         ];
         for name in RECORDED.into_iter().chain(asked_for.into_iter().flatten()) {
-            let path = folder.join(name);
+            let path = self.folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
-        let results = Self {
+        Ok(())
+    }
+
+    /// Nothing pushed yet, nothing written.
+    pub(crate) fn new(folder: &Path, scene: &'a Scene, options: Options) -> Self {
+        Self {
             scene,
             folder: folder.to_owned(),
             record: record(scene, options),
@@ -95,16 +146,15 @@ impl<'a> Results<'a> {
             in_window: window_grains(scene),
             unrecorded: None,
             solver_warnings: SolverWarnings::default(),
+            without_moduli: Vec::new(),
             log: Log::open(),
             written: Instant::now(),
-        };
-        publish(&folder.join("scene.toml"), scene.text.as_bytes())?;
-        if let Some(compared) = &scene.compare {
-            let table = fs::read(compared).map_err(ResultsError::unreadable(compared))?;
-            publish(&folder.join("compare.csv"), &table)?;
+            before: Before::default(),
+            checkpoints: Checkpoints {
+                written: Instant::now(),
+                cost: Duration::ZERO,
+            },
         }
-        results.write_growing()?;
-        Ok(results)
     }
 
     /// Adds an equilibrium; step 0 is the state before loading, and no row of `steps`.
@@ -122,12 +172,12 @@ impl<'a> Results<'a> {
         self.action_rows.extend(actions);
         if equilibrium.step > 0 {
             self.steps.push(self.step_row(equilibrium, measures));
+            if equilibrium.tangents.is_some() && measures.moduli.is_none() {
+                self.without_moduli.push(equilibrium.step);
+            }
         }
         self.log.note_step(equilibrium.step, equilibrium.iterations);
-        if equilibrium
-            .step
-            .is_multiple_of(self.scene.record_every.max(1))
-        {
+        if self.is_recorded(equilibrium.step) {
             self.unrecorded = None;
             self.write_recorded(equilibrium, grain_stress)?;
         } else {
@@ -140,6 +190,18 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
+    /// Whether the grains and contacts of a load step are recorded whatever comes after it.
+    pub(crate) fn is_recorded(&self, step: usize) -> bool {
+        step.is_multiple_of(self.scene.record_every.max(1))
+    }
+
+    /// Takes the last equilibrium of the run that goes on, which is recorded if none comes after it.
+    pub fn go_on_from(&mut self, equilibrium: Equilibrium, grain_stress: PerGrain<Tensor>) {
+        if !self.is_recorded(equilibrium.step) {
+            self.unrecorded = Some((equilibrium, grain_stress));
+        }
+    }
+
     /// Adds a state on the way to `equilibrium`, before or after the equilibrium itself.
     pub fn push_iterate(
         &mut self,
@@ -150,9 +212,13 @@ impl<'a> Results<'a> {
         let row = StepRow {
             iterations: iterate.iteration,
             residual: iterate.residual,
-            energy: None,
+            energy: iterate.ledger.map(|(_, energy)| energy),
             iteration: Some(iterate.iteration),
             ..self.row_of_state(equilibrium, &iterate.state, measures)
+        };
+        let row = match iterate.ledger {
+            Some((load_factor, _)) => StepRow { load_factor, ..row },
+            None => row,
         };
         self.iterates.push(row);
     }
@@ -165,7 +231,9 @@ impl<'a> Results<'a> {
     /// What the user should know so far: of the scene, then of the load steps, each warning once.
     pub fn warnings(&self) -> Vec<String> {
         let known = self.record.warnings.iter().cloned();
-        known.chain(self.solver_warnings.texts()).collect()
+        let no_moduli = without_moduli(&self.without_moduli);
+        let of_steps = self.solver_warnings.texts().chain(no_moduli);
+        known.chain(of_steps).collect()
     }
 
     /// Adds a sentence that the user should know.
@@ -189,6 +257,9 @@ impl<'a> Results<'a> {
         self.record.failure = failure;
         self.log.note(state.name());
         self.write_growing()?;
+        if matches!(state, RunState::Done | RunState::NoEquilibrium) {
+            clear_checkpoints(&self.folder)?;
+        }
         Ok(self.steps)
     }
 
@@ -196,7 +267,7 @@ impl<'a> Results<'a> {
         let step = equilibrium.step;
         for &event in &equilibrium.events {
             self.broken += usize::from(matches!(event.kind, EventKind::Broke { .. }));
-            let number = self.events.len();
+            let number = rows(self.before.events.as_ref()) + self.events.len();
             self.events.push(EventRow {
                 number,
                 step,
@@ -267,10 +338,13 @@ impl<'a> Results<'a> {
         let assembly = &self.scene.assembly;
         let active = self.active_contacts(&equilibrium.state);
         let grains = |range| self.grain_rows(range, equilibrium, grain_stress, &active);
-        let (count, columns) = (assembly.grains.len(), grain_columns());
+        let wanted = &self.scene.record_columns;
+        let (count, mut columns) = (assembly.grains.len(), grain_columns());
+        retain(&mut columns, wanted.grains.as_deref(), equilibrium.step);
         let write_grains = || publish_rows(&path("grains"), &columns, count, grains);
         let contacts = |range| self.contact_rows(range, equilibrium);
-        let (count, columns) = (assembly.contacts.len(), contact_columns());
+        let (count, mut columns) = (assembly.contacts.len(), contact_columns());
+        retain(&mut columns, wanted.contacts.as_deref(), equilibrium.step);
         let write_contacts = || publish_rows(&path("contacts"), &columns, count, contacts);
         let (grains, contacts) = rayon::join(write_grains, write_contacts);
         grains?;
@@ -366,27 +440,41 @@ impl<'a> Results<'a> {
         present.map(row).collect()
     }
 
-    fn write_growing(&self) -> Result<(), ResultsError> {
+    pub(crate) fn write_growing(&self) -> Result<(), ResultsError> {
         let path = |name| self.folder.join(name);
-        publish_table(&path("steps.parquet"), &step_columns(), &self.steps)?;
-        publish_table(&path("events.parquet"), &event_columns(), &self.events)?;
-        publish_table(
-            &path("actions.parquet"),
-            &action_columns(),
-            &self.action_rows,
-        )?;
+        let Before {
+            steps,
+            iterations,
+            events,
+            actions,
+        } = &self.before;
+        let (steps, new) = (steps.as_ref(), &self.steps[rows(steps.as_ref())..]);
+        publish_after(&path("steps.parquet"), &step_columns(), steps, new)?;
+        let (events, new) = (events.as_ref(), &self.events);
+        publish_after(&path("events.parquet"), &event_columns(), events, new)?;
+        let (actions, new) = (actions.as_ref(), &self.action_rows);
+        publish_after(&path("actions.parquet"), &action_columns(), actions, new)?;
         if self.scene.settings.keep_iterates {
-            let columns = iterate_columns();
-            publish_table(&path("iterations.parquet"), &columns, &self.iterates)?;
+            let (columns, before) = (iterate_columns(), iterations.as_ref());
+            publish_after(
+                &path("iterations.parquet"),
+                &columns,
+                before,
+                &self.iterates,
+            )?;
         }
+        self.write_record()?;
+        publish(&path("log.ndjson"), self.log.text().as_bytes())
+    }
+
+    fn write_record(&self) -> Result<(), ResultsError> {
         let record = RunRecord {
             warnings: self.warnings(),
             ..self.record.clone()
         };
         let mut record = serde_json::to_string_pretty(&record).expect("words are JSON");
         record.push('\n');
-        publish(&path("run.json"), record.as_bytes())?;
-        publish(&path("log.ndjson"), self.log.text().as_bytes())
+        publish(&self.folder.join("run.json"), record.as_bytes())
     }
 }
 

@@ -4,6 +4,7 @@ use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
 
 use crate::ResultsError;
+use crate::checkpoint::{CHECKPOINT, is_generation};
 
 /// Folders of tables, a file a recorded load step.
 pub(crate) const RECORDED: [&str; 3] = ["grains", "contacts", "sides"];
@@ -77,14 +78,54 @@ pub fn check_apart(folder: &Path, read: &[PathBuf]) -> Result<(), ResultsError> 
     }
 }
 
+/// Takes away what a run left that was broken off before it wrote `run.json`, or with nothing to go on from.
+///
+/// # Errors
+/// A folder that holds anything else; files that cannot be removed.
+pub fn clear_unfinished(folder: &Path) -> Result<(), ResultsError> {
+    if is_empty(folder) {
+        return Ok(());
+    }
+    let not_results = |error| match error {
+        ResultsError::NotOfARun { .. } if !folder.join("run.json").is_file() => {
+            ResultsError::NotResults {
+                folder: folder.to_owned(),
+            }
+        }
+        other => other,
+    };
+    remove(files_of_a_run(folder).map_err(not_results)?)
+}
+
 /// Takes away the files of an earlier run, and nothing else; the folder itself stays.
 pub(crate) fn make_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
     check_room(folder, replace)?;
     if is_empty(folder) {
         return Ok(());
     }
+    remove(files_of_a_run(folder)?)
+}
+
+/// Takes away what writing left that was broken off, and tables of load steps that are not to be recorded.
+pub(crate) fn clear_leftovers(
+    folder: &Path,
+    is_recorded: impl Fn(usize) -> bool,
+) -> Result<(), ResultsError> {
+    let is_left = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let number = name.strip_suffix(".parquet").and_then(|n| n.parse().ok());
+        name.starts_with('.') || number.is_some_and(|step| !is_recorded(step))
+    };
+    remove(
+        files_of_a_run(folder)?
+            .into_iter()
+            .filter(is_left)
+            .collect(),
+    )
+}
+
+fn remove(mut files: Vec<PathBuf>) -> Result<(), ResultsError> {
     // Without run.json the rest would be taken for something else, so it goes last.
-    let mut files = files_of_a_run(folder)?;
     files.sort_by_key(|path| path.ends_with("run.json"));
     for file in files {
         fs::remove_file(&file).map_err(ResultsError::unwritable(&file))?;
@@ -109,10 +150,14 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
             .iter()
             .chain(&ASKED_FOR)
             .any(|known| *known == name);
-        if is_folder && is_recorded {
+        let is_known: Option<fn(&str) -> bool> = match name.as_str() {
+            CHECKPOINT => Some(is_generation),
+            _ => is_recorded.then_some(is_table),
+        };
+        if let Some(is_known) = is_known.filter(|_| is_folder) {
             for table in entries(&entry.path())? {
                 let name = table.file_name().to_string_lossy().into_owned();
-                take(folder, &table, is_table(&name), &mut files)?;
+                take(folder, &table, is_known(&name), &mut files)?;
             }
         } else {
             take(folder, &entry, is_file_of_a_run(&name), &mut files)?;

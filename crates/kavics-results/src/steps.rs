@@ -61,30 +61,69 @@ impl ResultsFolder {
     /// # Errors
     /// A table that cannot be read.
     pub fn step_rows(&self) -> Result<Vec<StepRow>, ResultsError> {
-        let table = self.steps()?;
-        let stage = table.texts("stage")?;
-        let mut rows = vec![StepRow::default(); table.len()];
-        for (row, stage) in rows.iter_mut().zip(stage) {
-            stage.clone_into(&mut row.stage);
-            row.energy = Some(Energy::default());
+        rows_without_measures(&self.steps()?)
+    }
+}
+
+fn rows_without_measures(table: &Columns) -> Result<Vec<StepRow>, ResultsError> {
+    let stage = table.texts("stage")?;
+    let mut rows = vec![StepRow::default(); table.len()];
+    for (row, stage) in rows.iter_mut().zip(stage) {
+        stage.clone_into(&mut row.stage);
+        row.energy = Some(Energy::default());
+    }
+    fill(&mut rows, table, "load_factor", |row| &mut row.load_factor)?;
+    fill(&mut rows, table, "residual", |row| &mut row.residual)?;
+    for (name, field) in COUNTS {
+        for (row, value) in rows.iter_mut().zip(table.integers(name)?) {
+            *field(row) = value.and_then(|v| usize::try_from(v).ok()).unwrap_or(0);
         }
-        fill(&mut rows, &table, "load_factor", |row| &mut row.load_factor)?;
-        fill(&mut rows, &table, "residual", |row| &mut row.residual)?;
-        for (name, field) in COUNTS {
-            for (row, value) in rows.iter_mut().zip(table.integers(name)?) {
-                *field(row) = value.and_then(|v| usize::try_from(v).ok()).unwrap_or(0);
+    }
+    for (name, field) in ENERGIES {
+        for (row, value) in rows.iter_mut().zip(table.numbers(name)?) {
+            if let Some(energy) = &mut row.energy {
+                *field(energy) = value;
             }
         }
-        for (name, field) in ENERGIES {
-            for (row, value) in rows.iter_mut().zip(table.numbers(name)?) {
-                if let Some(energy) = &mut row.energy {
-                    *field(energy) = value;
+    }
+    Ok(rows)
+}
+
+/// The rows of `steps` with the stress and its parts, and no other measures.
+pub(crate) fn rows_with_stress(table: &Columns) -> Result<Vec<StepRow>, ResultsError> {
+    let mut rows = rows_without_measures(table)?;
+    for (row, isotropic) in rows.iter_mut().zip(table.numbers("isotropic_stress")?) {
+        row.measures.stress = (!isotropic.is_nan()).then(|| StressPartition {
+            isotropic,
+            ..StressPartition::default()
+        });
+    }
+    for (prefix, tensor) in STRESSES {
+        for (name, component) in COMPONENTS {
+            let values = table.numbers(&format!("{prefix}_{name}"))?;
+            for (row, value) in rows.iter_mut().zip(values) {
+                if let Some(stress) = &mut row.measures.stress {
+                    *component(tensor(stress)) = value;
                 }
             }
         }
-        Ok(rows)
     }
+    Ok(rows)
 }
+
+const STRESSES: [Field<StressPartition, Tensor>; 4] = [
+    ("stress", |p| &mut p.total),
+    ("shear_stress", |p| &mut p.shear),
+    ("variation_stress", |p| &mut p.variation),
+    ("fabric_stress", |p| &mut p.fabric),
+];
+
+const COMPONENTS: [Field<Tensor, f64>; 4] = [
+    ("xx", |t| &mut t.xx),
+    ("xy", |t| &mut t.xy),
+    ("yx", |t| &mut t.yx),
+    ("yy", |t| &mut t.yy),
+];
 
 type Field<R, T> = (&'static str, fn(&mut R) -> &mut T);
 

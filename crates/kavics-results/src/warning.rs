@@ -3,6 +3,7 @@
 use std::mem::discriminant;
 
 use kavics::equilibrium::{Breakdown, Warning};
+use kavics::warning::WarningKind;
 
 /// Warnings of the load steps, each once with all its load steps.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +26,28 @@ impl SolverWarnings {
             }
             None => self.list.push((warning.clone(), vec![step])),
         }
+    }
+
+    /// The warnings as numbers: load step, kind and sizes.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let list = self.list.iter();
+        list.flat_map(|(warning, steps)| {
+            let [kind, size, other] = warning.numbers();
+            let steps = steps.iter();
+            steps.flat_map(move |&step| [step as f64, kind, size, other])
+        })
+        .collect()
+    }
+
+    /// The warnings of such numbers.
+    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
+        let mut warnings = Self::default();
+        for &[step, kind, size, other] in numbers.as_chunks::<4>().0 {
+            if let Some(warning) = Warning::of_numbers([kind, size, other]) {
+                warnings.add(step as usize, &warning);
+            }
+        }
+        warnings
     }
 
     /// The warnings in words, in the order in which they first came.
@@ -61,16 +84,44 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::Separated => {
             "separated: the loads fell to zero; what would follow is left out".to_owned()
         }
+        Warning::StepCut { .. } => {
+            format!("did not go in one, halved {}", count("time"))
+        }
+        Warning::SetAside { .. } => {
+            format!("{} set aside, neither held nor loaded", count("grain"))
+        }
+        Warning::Chattered { .. } => {
+            format!(
+                "{} changed phase in circles before they settled",
+                count("contact")
+            )
+        }
+        Warning::ManyIterations { iterations, limit } => {
+            format!("{up_to}{iterations} iterations where {limit} are the limit")
+        }
+        Warning::NoModes => "the lowest modes asked for were not found".to_owned(),
+        Warning::FloppyModesUncounted => {
+            "solved by iteration, which counts no floppy modes".to_owned()
+        }
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
-    format!("load step{plural} {}: {what}", ranges(steps))
+    let what = format!("load step{plural} {}: {what}", ranges(steps));
+    warning.kind().says(what)
 }
 
 fn count(warning: &Warning) -> usize {
     match warning {
         Warning::RegularisedPivots { count } => *count,
-        Warning::ShearFloor { contacts } | Warning::SecondOrderWork { contacts } => *contacts,
-        Warning::SolvedDirectly { .. } | Warning::Separated => 1,
+        Warning::ShearFloor { contacts }
+        | Warning::SecondOrderWork { contacts }
+        | Warning::Chattered { contacts } => *contacts,
+        Warning::SetAside { grains } => *grains,
+        Warning::StepCut { cuts } => *cuts,
+        Warning::ManyIterations { iterations, .. } => *iterations,
+        Warning::SolvedDirectly { .. }
+        | Warning::Separated
+        | Warning::NoModes
+        | Warning::FloppyModesUncounted => 1,
         Warning::WorkError { .. } => 0,
     }
 }
@@ -81,6 +132,16 @@ fn size(warning: &Warning) -> f64 {
         Warning::WorkError { relative } => *relative,
         _ => count(warning) as f64,
     }
+}
+
+/// What is said of load steps without the moduli asked for; nothing where there are none.
+pub(crate) fn without_moduli(steps: &[usize]) -> Option<String> {
+    let plural = if steps.len() == 1 { "" } else { "s" };
+    let what = format!(
+        "load step{plural} {}: no moduli, as the window has no rim of grains that its contacts hold together",
+        ranges(steps)
+    );
+    (!steps.is_empty()).then(|| WarningKind::NoModuli.says(what))
 }
 
 /// Rising numbers in short: "1, 3 to 7".
@@ -118,9 +179,9 @@ mod tests {
         assert_eq!(
             texts,
             [
-                "load steps 1, 3 to 4: shear modulus at its floor in up to 5 contacts",
-                "load step 4: 1 floppy mode that no load moves held in place",
-                "load step 7: work and energies known to within 3e-4 of the work"
+                "load steps 1, 3 to 4: shear modulus at its floor in up to 5 contacts [shear-floor]",
+                "load step 4: 1 floppy mode that no load moves held in place [floppy-modes-held]",
+                "load step 7: work and energies known to within 3e-4 of the work [work-error]"
             ]
         );
     }

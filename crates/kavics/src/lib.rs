@@ -51,3 +51,4 @@ pub mod measure;
 pub mod packing;
 pub mod scene;
 pub mod solver;
+pub mod warning;

@@ -4,16 +4,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Module and what it may use, as in the table of ARCHITECTURE.md.
-const MAY_USE: [(&str, &[&str]); 10] = [
+const MAY_USE: [(&str, &[&str]); 11] = [
     ("ids", &[]),
     ("geometry", &[]),
     ("contact_law", &["ids"]),
     ("assembly", &["ids", "geometry"]),
     ("packing", &["ids", "geometry", "assembly"]),
     ("solver", &[]),
+    ("warning", &[]),
     (
         "equilibrium",
-        &["ids", "geometry", "assembly", "contact_law", "solver"],
+        &[
+            "ids",
+            "geometry",
+            "assembly",
+            "contact_law",
+            "solver",
+            "warning",
+        ],
     ),
     (
         "loading",
@@ -33,6 +41,7 @@ const MAY_USE: [(&str, &[&str]); 10] = [
             "packing",
             "equilibrium",
             "loading",
+            "warning",
         ],
     ),
 ];

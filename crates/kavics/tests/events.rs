@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use kavics::equilibrium::{Equilibrium, Event, EventKind, SolveError};
-use kavics::ids::{ContactId, GrainId};
+use kavics::ids::{BodyId, ContactId, GrainId};
 use kavics::scene::Scene;
 
 fn scene(text: &str) -> Scene {
@@ -128,6 +128,10 @@ fn three_discs_break_at_their_closed_form_and_snap_back_to_the_second() {
     let events = breaks(&path);
     assert_eq!(contacts(&path), [ContactId(0)]);
     assert_close(events[0].load_factor, first, 1e-12);
+    let drive = events[0].drive.expect("a load drives the path");
+    let pressed = -path[1].state.displacements.values()[2].y;
+    assert_close(drive.displacement, pressed * first / 0.1, 1e-9);
+    assert_close(drive.force, first, 1e-12);
     let last = path.last().expect("an equilibrium");
     assert!(!last.complete);
     assert_close(last.load_factor, second, 1e-12);
@@ -402,6 +406,78 @@ fn with_constant_weight_every_equilibrium_is_admissible_and_the_ledger_closes() 
     let released: f64 = breaks(&path).iter().map(|e| energies(e)[1]).sum();
     assert!(released > 0.0);
     assert!(breaks(&path).iter().all(|e| energies(e)[1] > -1e-15));
+}
+
+#[test]
+fn the_ledger_closes_after_every_event() {
+    for action in [MOVED, LOADED, WEIGHED] {
+        let text = BLOCK.replace("ACTION", action);
+        let text = format!(
+            "{}\n[measure]\nevery = \"iteration\"\n",
+            with(&text, "event-driven", "{ to = 0.2, steps = 4 }")
+        );
+        let (path, _) = run(&text);
+        let ledgers = path.iter().flat_map(|e| &e.iterates);
+        let ledgers: Vec<_> = ledgers.filter_map(|iterate| iterate.ledger).collect();
+        assert!(ledgers.len() > 10, "{}", ledgers.len());
+        for (load_factor, energy) in ledgers {
+            assert!(
+                energy.ledger_error().abs() <= 1e-9 * energy.external_work.abs(),
+                "at {load_factor}: {:e} of {:e}",
+                energy.ledger_error(),
+                energy.external_work
+            );
+        }
+    }
+}
+
+/// A column of four discs, its middle bond strong, the others of equal strength.
+const COLUMN: &str = r#"
+[box]
+width = 2.0
+height = 8.0
+[grains.square]
+radius = 1.0
+rows = [1, 1, 1, 1]
+[contact.strong.cemented]
+stiffness.direct = { normal = 1.0, shear = 0.5, moment = 0.3 }
+[contact.weak.cemented]
+stiffness.direct = { normal = 1.0, shear = 0.5, moment = 0.3 }
+strength.force = { tension = 0.1 }
+[[zone]]
+contact = "weak"
+[[zone]]
+contact = "strong"
+strip = { y = [3.5, 4.5] }
+[[support]]
+grains = { ids = [0] }
+fix = ["x", "y", "rotation"]
+[[move]]
+name = "pull"
+grains = { ids = [3] }
+y = 1.0
+[[stage]]
+factors = { to = 1.0, steps = 4 }
+[equilibrium]
+breakage = "BREAKAGE"
+"#;
+
+#[test]
+fn a_piece_that_comes_loose_by_ties_carries_nothing_and_sets_its_energy_free() {
+    for breakage in ["event-driven", "worst-first", "simultaneous"] {
+        let (path, error) = run(&COLUMN.replace("BREAKAGE", breakage));
+        assert!(error.is_none(), "{error:?}");
+        let last = path.last().expect("an equilibrium");
+        assert_eq!(contacts(&path), [ContactId(0), ContactId(2)]);
+        assert!(last.set_aside[GrainId(1)] && last.set_aside[GrainId(2)]);
+        let middle = last.state.contacts[ContactId(1)].force;
+        assert!(middle.normal.abs() + middle.shear.abs() + middle.moment.abs() < 1e-15);
+        assert!(last.energy.elastic_energy < 1e-15, "{:?}", last.energy);
+        assert_ledger_closes(&path);
+        // The piece moved with what it hung between.
+        let u = last.state.displacements[BodyId(1)].y;
+        assert!(u > 0.05, "{u}");
+    }
 }
 
 /// Equal strengths, symmetric loads: bonds break in pairs and rows.

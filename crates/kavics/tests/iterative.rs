@@ -143,7 +143,7 @@ fn contact_forces_are_those_of_a_factor_to_ten_times_the_tolerance() {
         solve(&assembly, &cement(6e3, 0.0), &program, settings).expect("an equilibrium")
     };
     let (factor, iterated) = (run(SolverChoice::Direct), run(SolverChoice::Iterative));
-    assert_eq!(iterated.warnings, []);
+    assert_eq!(iterated.warnings, [Warning::FloppyModesUncounted]);
     assert!(iterated.residual <= 1e-10);
     assert!(iterated.iterations <= 3, "{}", iterated.iterations);
     let apart = difference(&factor, &iterated);
@@ -219,7 +219,8 @@ proptest! {
             solve(&assembly, &cement(6e3, 0.75), &program, settings).expect("an equilibrium")
         };
         let (factor, iterated) = (run(SolverChoice::Direct), run(SolverChoice::Iterative));
-        prop_assert_eq!(&iterated.warnings, &factor.warnings);
+        prop_assert_eq!(&iterated.warnings, &[Warning::FloppyModesUncounted]);
+        prop_assert_eq!(&factor.warnings, &[]);
         let apart = difference(&factor, &iterated);
         prop_assert!(apart <= 1e-8, "{apart:e}");
     }

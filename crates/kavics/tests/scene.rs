@@ -73,7 +73,7 @@ fn three_discs_are_built() {
     );
     // Every grain is held or loaded.
     assert!(scene.window.is_empty());
-    assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+    assert_eq!(scene.warnings.len(), 2, "{:?}", scene.warnings);
 }
 
 #[test]
@@ -279,7 +279,7 @@ fn an_edge_load_says_what_it_does_not_meet() {
     let total: f64 = scene.program.loads.iter().map(|l| l.load.y).sum();
     assert!((total + 4.0).abs() < 1e-12);
     assert!(
-        scene.warnings[0].contains("over 2 of the 6"),
+        scene.warnings[1].contains("over 2 of the 6"),
         "{:?}",
         scene.warnings
     );

@@ -1,16 +1,11 @@
 //! Scenes that the command runs, and their tables read back.
-#![allow(dead_code, reason = "each test program uses a part of this")]
-
-pub mod expected;
-pub mod identities;
-pub mod packed;
-pub mod tables;
 
 use std::path::{Path, PathBuf};
 
-use assert_cmd::Command;
-use kavics_results::{Columns, ResultsError, ResultsFolder};
+use kavics_results::Columns;
 use tempfile::TempDir;
+
+pub use kavics_verify::ContactRow;
 
 /// The folder of the workspace.
 pub fn workspace() -> PathBuf {
@@ -23,26 +18,22 @@ pub struct Run {
     pub status: i32,
     /// Text for the user.
     pub stderr: String,
-    room: TempDir,
+    left: kavics_verify::Run,
+    _room: TempDir,
 }
 
 impl Run {
     /// `kavics run SCENE -o DIR …`, or `kavics pack SCENE -o FILE …`.
     pub fn of(task: &str, scene: &Path, arguments: &[&str]) -> Self {
         let room = tempfile::tempdir().expect("a temporary folder");
-        let output = if task == "pack" {
-            "grains.csv"
-        } else {
-            "results"
-        };
-        let mut command = Command::cargo_bin("kavics").expect("the command");
-        command.arg(task).arg(scene).arg("-o");
-        command.arg(room.path().join(output)).args(arguments);
-        let done = command.output().expect("the command runs");
+        let program = Path::new(env!("CARGO_BIN_EXE_kavics"));
+        let run = kavics_verify::Run::of(program, task, scene, arguments, room.path());
+        let run = run.expect("the command runs");
         Self {
-            status: done.status.code().unwrap_or(-1),
-            stderr: String::from_utf8_lossy(&done.stderr).into_owned(),
-            room,
+            status: run.status,
+            stderr: run.stderr.clone(),
+            left: run,
+            _room: room,
         }
     }
 
@@ -51,40 +42,28 @@ impl Run {
         Self::of("run", &workspace().join("scenes").join(name), &[])
     }
 
-    /// The results folder.
-    pub fn results(&self) -> ResultsFolder {
-        ResultsFolder::open(&self.room.path().join("results"))
-            .unwrap_or_else(|error| panic!("{error}\n{}", self.stderr))
-    }
-
     /// A table; `steps`, `iterations` and `events` hold all load steps.
-    pub fn table(&self, name: &str, step: usize) -> Result<Columns, ResultsError> {
-        let results = self.results();
-        match name {
-            "steps" => results.steps(),
-            "events" => results.events(),
-            "grains" => results.grains(step),
-            "contacts" => results.contacts(step),
-            "sides" => results.sides(step),
-            "voids" => results.voids(step),
-            "cracks" => Ok(results.cracks(step)?.expect("the scene asks for cracks")),
-            other => Columns::read(&results.path().join(format!("{other}.parquet"))),
-        }
+    pub fn table(&self, name: &str, step: usize) -> Result<Columns, String> {
+        self.left.table(name, step)
     }
 
     /// A column of `steps`.
     pub fn steps(&self, column: &str) -> Vec<f64> {
-        let steps = self.results().steps().expect("steps");
-        steps.numbers(column).expect("a column of steps")
+        self.left.steps(column).expect("a column of steps")
     }
 
     /// The last load step.
     pub fn last_step(&self) -> usize {
-        self.steps("step").last().map_or(0, |step| *step as usize)
+        self.left.last_step().expect("steps")
     }
+}
 
-    /// What `pack` wrote.
-    pub fn packed(&self) -> String {
-        std::fs::read_to_string(self.room.path().join("grains.csv")).expect("packed grains")
+/// The tables of one load step.
+pub struct Tables;
+
+impl Tables {
+    /// Those of a run.
+    pub fn read(run: &Run, step: usize) -> kavics_verify::Tables {
+        kavics_verify::Tables::read(&run.left, step).expect("tables")
     }
 }

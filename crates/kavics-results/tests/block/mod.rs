@@ -19,7 +19,7 @@ use kavics::loading::{Action, AppliedLoad, Breakage, Held, Program, Stage};
 use kavics::measure::{
     ElasticityTensor, Measures, Moduli, StressPartition, SymmetricTensor, Tensor,
 };
-use kavics::scene::Scene;
+use kavics::scene::{RecordColumns, Scene};
 use kavics_results::{Options, Results, RunState};
 
 /// Rows of `long` and `long − 1` discs of radius 1, from the bottom; a side below them.
@@ -75,6 +75,7 @@ pub fn scene(rows: usize, long: usize) -> Scene {
         window: (long..bodies).map(GrainId::from_index).collect(),
         record_every: 1,
         record_voids: false,
+        record_columns: RecordColumns::default(),
         record_cracks: false,
         compare: None,
         warnings: vec!["0.73 of the top side carries no load: no grain is met there".to_owned()],
@@ -242,6 +243,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
             release_energy: 0.034,
         },
         avalanche: None,
+        drive: None,
     };
     Equilibrium {
         step,

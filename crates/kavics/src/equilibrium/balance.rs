@@ -47,8 +47,10 @@ impl System<'_> {
             self.respond(configuration);
             let imbalance = self.imbalance(configuration, &action.loads);
             progress.residual = imbalance.residual(self.noise());
+            (self.watch).note_iteration(progress.iterations, progress.residual);
             self.keep_iterate(configuration, progress);
             if progress.residual <= self.settings.tolerance {
+                progress.longest.note(history.len(), MOST_ITERATIONS);
                 if self.is_rounding(&imbalance, action) {
                     self.try_undeformed(configuration, action);
                 }
@@ -197,6 +199,7 @@ impl System<'_> {
                 iteration,
                 residual,
                 state: configuration.state(),
+                ledger: None,
             });
         }
     }

@@ -132,6 +132,30 @@ pub struct Progress {
     pub residual: f64,
     /// Floppy modes held in the last factorisation.
     pub held_pivots: usize,
+    /// Largest number of contacts that changed phase in circles in one search.
+    pub chattered: usize,
+    /// The iteration that came nearest to its limit, and that limit.
+    pub longest: Longest,
+    /// Whether a system was solved by iteration, which counts no floppy modes.
+    pub uncounted: bool,
     /// The way, when asked for.
     pub iterates: Vec<Iterate>,
+}
+
+/// How near iterations came to the limit at which they are given up.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Longest {
+    /// Iterations of the one that came nearest.
+    pub iterations: usize,
+    /// Its limit; 0 before any.
+    pub limit: usize,
+}
+
+impl Longest {
+    /// Takes note of an iteration that has ended well.
+    pub fn note(&mut self, iterations: usize, limit: usize) {
+        if iterations * self.limit >= self.iterations * limit {
+            *self = Self { iterations, limit };
+        }
+    }
 }

@@ -57,7 +57,7 @@ impl Memory {
     pub(crate) fn put_triples(
         &mut self,
         name: &str,
-        values: impl Iterator<Item = [f64; 3]> + Clone,
+        values: &(impl Iterator<Item = [f64; 3]> + Clone),
     ) {
         for (index, component) in ["x", "y", "rotation"].into_iter().enumerate() {
             let column = values.clone().map(|triple| triple[index]).collect();
@@ -74,7 +74,8 @@ impl Memory {
 
     /// Keeps loads.
     pub(crate) fn put_loads(&mut self, name: &str, loads: &PerBody<Load>) {
-        self.put_triples(name, loads.values().iter().map(|load| load.components()));
+        let values = loads.values().iter().map(|load| load.components());
+        self.put_triples(name, &values);
     }
 
     /// Reads loads.
@@ -88,7 +89,7 @@ impl Configuration {
     /// Writes displacements and bonds into a memory.
     pub fn write(&self, system: &System<'_>, memory: &mut Memory) {
         let u = self.displacements.values().iter();
-        memory.put_triples("body.displacement", u.map(|u| u.components()));
+        memory.put_triples("body.displacement", &u.map(|u| u.components()));
         let bonds = self.bonds.values();
         for ((name, read, _), (remembered, read_remembered, _)) in PRESENT.iter().zip(REMEMBERED) {
             let (now, before) = (gathered(bonds, read), gathered(bonds, &read_remembered));

@@ -33,15 +33,21 @@ pub struct Iterating {
     made_for: u64,
 }
 
+impl SolverChoice {
+    /// Whether linear systems of so many unknowns are solved by iteration.
+    pub fn iterates(self, unknowns: usize) -> bool {
+        match self {
+            Self::Auto => unknowns >= MANY,
+            Self::Direct => false,
+            Self::Iterative => true,
+        }
+    }
+}
+
 impl System<'_> {
     /// Whether linear systems are solved by iteration.
     pub(super) fn iterates(&self) -> bool {
-        let wanted = match self.settings.solver {
-            SolverChoice::Auto => self.unknowns() >= MANY,
-            SolverChoice::Direct => false,
-            SolverChoice::Iterative => true,
-        };
-        wanted && self.breakdown.is_none()
+        self.settings.solver.iterates(self.unknowns()) && self.breakdown.is_none()
     }
 
     /// Solves in place, the matrix being that of the secant or of the tangent.

@@ -158,6 +158,58 @@ struct Lever {
     along_tangent: f64,
 }
 
+/// A motion of bodies as one.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidMotion {
+    centre: Vector,
+    displacement: Displacement,
+}
+
+impl RigidMotion {
+    /// The nearest to the displacements of bodies at places with radii, each with the mass R²: it has their momentum and
+    /// their moment of momentum,
+    ///
+    /// ```math
+    /// \omega = \frac{\sum_p R_p^2\,[(x_p - \bar x)\times(u_p - \bar u) + \tfrac12 R_p^2\,\omega_p]}
+    ///   {\sum_p R_p^2\,[(x_p - \bar x)^2 + \tfrac12 R_p^2]}
+    /// ```
+    pub fn nearest(bodies: &[(Vector, f64, Displacement)]) -> Self {
+        let (mut mass, mut centre, mut mean) = (0.0, Vector::new(0.0, 0.0), Vector::new(0.0, 0.0));
+        for &(place, radius, u) in bodies {
+            mass += radius * radius;
+            centre = centre + place * (radius * radius);
+            mean = mean + Vector::new(u.x, u.y) * (radius * radius);
+        }
+        (centre, mean) = (centre * (1.0 / mass), mean * (1.0 / mass));
+        let (mut moment, mut inertia) = (0.0, 0.0);
+        for &(place, radius, u) in bodies {
+            let (arm, square) = (place - centre, radius * radius);
+            let way = Vector::new(u.x, u.y) - mean;
+            moment += square * (arm.quarter_turn().dot(way) + 0.5 * square * u.rotation);
+            inertia += square * (arm.dot(arm) + 0.5 * square);
+        }
+        Self {
+            centre,
+            displacement: Displacement {
+                x: mean.x,
+                y: mean.y,
+                rotation: moment / inertia,
+            },
+        }
+    }
+
+    /// The displacement of a body at a place.
+    pub fn at(&self, place: Vector) -> Displacement {
+        let Displacement { x, y, rotation } = self.displacement;
+        let turned = (place - self.centre).quarter_turn() * rotation;
+        Displacement {
+            x: x + turned.x,
+            y: y + turned.y,
+            rotation,
+        }
+    }
+}
+
 /// The frame of a contact: its bodies, normal and levers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactFrame {
@@ -335,6 +387,30 @@ mod tests {
         let [on_first, on_second] = frame().loads(q);
         let inner = q.normal * v.normal + q.shear * v.shear + q.moment * v.rotation;
         assert!((inner + on_first.work(first) + on_second.work(second)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_rigid_motion_is_nearest_to_itself() {
+        let turn = RigidMotion {
+            centre: Vector::new(0.5, -2.0),
+            displacement: Displacement {
+                x: 0.3,
+                y: -0.1,
+                rotation: 0.02,
+            },
+        };
+        let places = [(1.0, 2.0, 0.5), (4.0, -1.0, 1.5), (-2.0, 0.3, 1.0)];
+        let bodies = places.map(|(x, y, radius)| {
+            let place = Vector::new(x, y);
+            (place, radius, turn.at(place))
+        });
+        let found = RigidMotion::nearest(&bodies);
+        for (place, _, u) in bodies {
+            let components = u.components().into_iter().zip(found.at(place).components());
+            for (expected, found) in components {
+                assert!((expected - found).abs() < 1e-15);
+            }
+        }
     }
 
     #[test]

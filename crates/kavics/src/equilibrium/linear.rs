@@ -33,7 +33,10 @@ impl System<'_> {
         if proximal == 0.0 && self.iterates() {
             progress.held_pivots = 0;
             match self.solve_by_iteration(configuration, iteration, general, &mut right) {
-                Ok(()) => return Ok(right),
+                Ok(()) => {
+                    progress.uncounted = true;
+                    return Ok(right);
+                }
                 Err(breakdown) => self.breakdown = Some(breakdown),
             }
         }

@@ -22,15 +22,18 @@ mod stability;
 pub(crate) mod steered;
 pub(crate) mod system;
 mod tangent;
+mod watch;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
 pub use memory::{Memory, MemoryColumn, MemoryError};
 pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
+pub use watch::{Glance, Watch};
 
 use crate::contact_law::{ContactForce, Matrix, Mode, Phase, RelativeDisplacement};
 use crate::ids::{ContactId, GrainId, PerBody, PerContact, PerGrain, PropertyId};
+use crate::warning::WarningKind;
 
 /// Displacement of a grain or side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -135,6 +138,20 @@ pub struct Event {
     /// Number of the avalanche it belongs to, over the whole run; only with event-driven breakage: events between
     /// two new maxima of the load factor.
     pub avalanche: Option<usize>,
+    /// How far what drives the load path had gone; only of breaks with event-driven breakage where loads alone or moves
+    /// alone drive it, from zero.
+    pub drive: Option<Drive>,
+}
+
+/// How far the loads or moves that drive the load path have gone, and with what force: force times a small change of the
+/// displacement is their work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Of loads: Σ f·u / Σ abs f, f at factor 1, in their direction; of moves: factor times mean abs a, `[length]`; a
+    /// rotation, where they are of these alone.
+    pub displacement: f64,
+    /// Of loads: factor times Σ abs f; of moves: Σ r·a over the mean abs a, r the reactions, `[force]`.
+    pub force: f64,
 }
 
 /// The kinds of events.
@@ -234,6 +251,8 @@ pub struct Iterate {
     pub residual: f64,
     /// Displacements and contacts.
     pub state: State,
+    /// Load factor and energies since the start; only where the state is an equilibrium, after an event.
+    pub ledger: Option<(f64, Energy)>,
 }
 
 /// Why linear systems are no more solved by iteration.
@@ -275,6 +294,52 @@ pub enum Warning {
     },
     /// Nothing ties the loaded part to the supports any more; the path ends.
     Separated,
+    /// The load step was taken in parts, as it did not go in one.
+    StepCut {
+        /// How often it was halved.
+        cuts: usize,
+    },
+    /// More grains are set aside than before loading.
+    SetAside {
+        /// How many are now.
+        grains: usize,
+    },
+    /// Contacts changed phase in circles before they settled.
+    Chattered {
+        /// How many contacts changed phase more than once.
+        contacts: usize,
+    },
+    /// An iteration came near the limit at which it is given up.
+    ManyIterations {
+        /// How many there were.
+        iterations: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// Modes were asked for and are not there.
+    NoModes,
+    /// Solved by iteration, which does not count the floppy modes that a factor would hold.
+    FloppyModesUncounted,
+}
+
+impl Warning {
+    /// What it is about.
+    pub fn kind(&self) -> WarningKind {
+        match self {
+            Self::RegularisedPivots { .. } => WarningKind::FloppyModesHeld,
+            Self::ShearFloor { .. } => WarningKind::ShearFloor,
+            Self::SolvedDirectly { .. } => WarningKind::SolvedDirectly,
+            Self::SecondOrderWork { .. } => WarningKind::SecondOrderWork,
+            Self::WorkError { .. } => WarningKind::WorkError,
+            Self::Separated => WarningKind::Separated,
+            Self::StepCut { .. } => WarningKind::StepCut,
+            Self::SetAside { .. } => WarningKind::SetAside,
+            Self::Chattered { .. } => WarningKind::Chattered,
+            Self::ManyIterations { .. } => WarningKind::ManyIterations,
+            Self::NoModes => WarningKind::NoModes,
+            Self::FloppyModesUncounted => WarningKind::FloppyModesUncounted,
+        }
+    }
 }
 
 /// An equilibrium: the end of a load step, or the undeformed state as step 0.

@@ -43,11 +43,13 @@ impl System<'_> {
         let mut drifts = 0;
         let mut moves = !action.moved.is_empty();
         loop {
-            self.leave_out_loose_pieces(&configuration.bonds, &action.loads);
+            let loose = self.leave_out_loose_pieces(&configuration.bonds, &action.loads);
+            self.relax(&loose, &mut configuration.displacements);
             let settled = self.settle(configuration, action, moves, progress)?;
             moves = false;
             let groups = self.violations(configuration);
             if settled == Settled::Balanced && groups.is_empty() {
+                note_effort(&met, &changed, most_sets, progress);
                 return Ok(());
             }
             drifts = if settled == Settled::Drifting {
@@ -126,6 +128,20 @@ impl System<'_> {
             grains: self.foremost_grains(size),
         }
     }
+}
+
+/// Takes note of contacts that went in circles, and of how many sets of phases there were.
+fn note_effort(
+    met: &HashMap<u64, usize>,
+    changed: &HashMap<ContactId, usize>,
+    most_sets: usize,
+    progress: &mut Progress,
+) {
+    if met.values().any(|&visits| visits > 1) {
+        let circling = changed.values().filter(|&&times| times > 1).count();
+        progress.chattered = progress.chattered.max(circling);
+    }
+    progress.longest.note(met.len(), most_sets);
 }
 
 fn phases_hash(configuration: &Configuration) -> u64 {

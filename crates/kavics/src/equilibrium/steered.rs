@@ -113,7 +113,8 @@ impl System<'_> {
         }
         let mut share = 0.0;
         for _ in 0..MOST_SETS {
-            self.leave_out_loose_pieces(&configuration.bonds, &ever);
+            let loose = self.leave_out_loose_pieces(&configuration.bonds, &ever);
+            self.relax(&loose, &mut configuration.displacements);
             share = self.settle_steered(configuration, steering, share, progress)?;
             let groups = self.violations(configuration);
             let Some(group) = groups.first() else {

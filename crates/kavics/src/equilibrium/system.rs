@@ -1,5 +1,6 @@
 //! The assembly as a system of equations: unknowns, pieces, forces and what they leave unbalanced.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,13 +9,13 @@ use rayon::prelude::*;
 use super::bond::Bond;
 use super::configuration::Configuration;
 use super::iterative::Iterating;
-use super::kinematics::{ALL_FREEDOMS, ContactFrame};
+use super::kinematics::{ALL_FREEDOMS, ContactFrame, RigidMotion};
 use super::side_sums::SideSums;
 use super::sparsity::{Numbers, Sparsity};
-use super::{Breakdown, Freedom, Iteration, Load, Settings};
+use super::{Breakdown, Displacement, Freedom, Iteration, Load, Settings, Watch};
 use crate::assembly::Assembly;
 use crate::contact_law::{ContactForce, Law, Matrix, Property};
-use crate::geometry::Pieces;
+use crate::geometry::{Pieces, Vector};
 use crate::ids::{BodyId, GrainId, Id, PerBody, PerContact, PerGrain, PerProperty};
 use crate::solver::{GeneralSolver, Inertia, SymmetricSolver};
 
@@ -50,6 +51,8 @@ pub struct System<'a> {
     pub stop: Option<Arc<AtomicBool>>,
     /// A search has ended so.
     pub stopped: bool,
+    /// For who waits.
+    pub watch: Arc<Watch>,
 }
 
 /// Unbalanced loads and the scale to see them by.
@@ -129,6 +132,7 @@ impl<'a> System<'a> {
             moved_force: 0.0,
             stop: None,
             stopped: false,
+            watch: Arc::default(),
         }
     }
 
@@ -160,8 +164,12 @@ impl<'a> System<'a> {
     }
 
     /// Finds the pieces that nothing holds and nothing loads, and leaves them out; and bodies without contact whose
-    /// free freedoms nothing loads.
-    pub fn leave_out_loose_pieces(&mut self, bonds: &PerContact<Bond>, loads: &PerBody<Load>) {
+    /// free freedoms nothing loads. Answers the loose pieces of more than one body.
+    pub fn leave_out_loose_pieces(
+        &mut self,
+        bonds: &PerContact<Bond>,
+        loads: &PerBody<Load>,
+    ) -> Vec<Vec<BodyId>> {
         let mut touched = vec![false; self.assembly.body_count()];
         let active = self
             .frames
@@ -180,9 +188,43 @@ impl<'a> System<'a> {
             let pushed = self.at_free_freedoms(BodyId::from_index(body), load) != Load::default();
             pushed || touched[body] && (self.anchored[body] || load != Load::default())
         });
-        for (set_aside, wanted) in self.set_aside.iter_mut().zip(wanted) {
-            *set_aside = !wanted;
+        let mut loose: BTreeMap<usize, Vec<BodyId>> = BTreeMap::new();
+        for (body, wanted) in wanted.into_iter().enumerate() {
+            self.set_aside[body] = !wanted;
+            if !wanted && touched[body] {
+                let piece = loose.entry(pieces.of(body)).or_default();
+                piece.push(BodyId::from_index(body));
+            }
         }
+        loose.into_values().collect()
+    }
+
+    /// What nothing holds and nothing loads carries no force: each loose piece keeps its place as a whole, and its
+    /// contacts go back to where they are at rest.
+    pub fn relax(&self, pieces: &[Vec<BodyId>], displacements: &mut PerBody<Displacement>) {
+        for piece in pieces {
+            let motion = self.rigid_motion(piece, |body| displacements[body]);
+            for &body in piece {
+                displacements[body] = motion.at(self.place(body));
+            }
+        }
+    }
+
+    /// The rigid motion of a piece that is nearest to the displacements of its bodies.
+    pub fn rigid_motion(
+        &self,
+        piece: &[BodyId],
+        displacement: impl Fn(BodyId) -> Displacement,
+    ) -> RigidMotion {
+        let bodies = piece.iter();
+        let bodies =
+            bodies.map(|&body| (self.place(body), self.moment_arm(body), displacement(body)));
+        RigidMotion::nearest(&bodies.collect::<Vec<_>>())
+    }
+
+    /// Reference point of a body.
+    pub fn place(&self, body: BodyId) -> Vector {
+        self.assembly.reference_point(self.assembly.partner(body))
     }
 
     /// Grains that nothing holds and nothing loads.

@@ -7,7 +7,7 @@ use super::work::{self, Account, Stretch, Vanishing};
 use super::{Breakage, Program};
 use crate::contact_law::{ContactForce, Mode, Phase};
 use crate::equilibrium::bond::Bond;
-use crate::equilibrium::configuration::{Action, Configuration, Failure, Progress};
+use crate::equilibrium::configuration::{Action, Configuration, Failure, Longest, Progress};
 use crate::equilibrium::steered::Steering;
 use crate::equilibrium::system::System;
 use crate::equilibrium::{
@@ -46,6 +46,9 @@ pub struct Way {
     /// Energy that softening took, `[force·length]`.
     pub softened: f64,
 }
+
+/// An iteration is said to be near its limit from this share of it on.
+const NEAR_LIMIT: f64 = 0.8;
 
 /// A bond that breaks.
 pub struct Break {
@@ -214,8 +217,10 @@ fn remembered(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     way.events.extend(happened);
+    system.watch.note_load_factor(load_factor);
     for bond in configuration.bonds.values_mut() {
         bond.remember(system.properties);
     }
@@ -298,6 +303,7 @@ pub fn break_softened(
                 release_energy: 0.0,
             },
             avalanche: None,
+            drive: None,
         });
     }
 }
@@ -432,8 +438,10 @@ pub(super) fn break_bonds(
             load_factor,
             kind,
             avalanche: None,
+            drive: None,
         });
     }
+    system.watch.note_broken(broken.len());
     let (next, released) = equilibrium(system, &start, &vanishing, action, load_factor, way)?;
     for (released, event) in released.into_iter().zip(&mut way.events[first_event..]) {
         if let EventKind::Broke { release_energy, .. } = &mut event.kind {
@@ -478,6 +486,12 @@ pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result
                 count: way.progress.held_pivots,
             },
         ),
+        (
+            way.progress.chattered,
+            Warning::Chattered {
+                contacts: way.progress.chattered,
+            },
+        ),
     ];
     way.warnings = warnings
         .into_iter()
@@ -488,10 +502,24 @@ pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result
     if relative > system.settings.work_tolerance {
         way.warnings.push(Warning::WorkError { relative });
     }
+    warn_of_solver(system, way);
+    Ok(())
+}
+
+/// Warns of what the solver did other than asked for, or hardly.
+fn warn_of_solver(system: &System<'_>, way: &mut Way) {
+    way.warnings.extend(near_limit(way.progress.longest));
     let direct = system.breakdown;
     way.warnings
         .extend(direct.map(|breakdown| Warning::SolvedDirectly { breakdown }));
-    Ok(())
+    if way.progress.uncounted {
+        way.warnings.push(Warning::FloppyModesUncounted);
+    }
+}
+
+fn near_limit(Longest { iterations, limit }: Longest) -> Option<Warning> {
+    let is_near = iterations as f64 > NEAR_LIMIT * limit as f64;
+    is_near.then_some(Warning::ManyIterations { iterations, limit })
 }
 
 /// The undeformed assembly.
@@ -542,6 +570,26 @@ pub fn first_events(point: &Point) -> Vec<Event> {
             load_factor: 0.0,
             kind: EventKind::SetAside(grain),
             avalanche: None,
+            drive: None,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_iteration_that_came_nearest_to_its_limit_is_told() {
+        let mut longest = Longest::default();
+        assert_eq!(near_limit(longest), None);
+        for (iterations, limit) in [(330, 400), (500, 1000), (9, 400)] {
+            longest.note(iterations, limit);
+        }
+        let told = Warning::ManyIterations {
+            iterations: 330,
+            limit: 400,
+        };
+        assert_eq!(near_limit(longest), Some(told));
+    }
 }

@@ -169,7 +169,7 @@ impl Point {
 }
 
 impl Energy {
-    fn terms(self) -> [f64; 6] {
+    pub(super) fn terms(self) -> [f64; 6] {
         [
             self.external_work,
             self.elastic_energy,
@@ -180,7 +180,7 @@ impl Energy {
         ]
     }
 
-    fn of_terms(terms: [f64; 6]) -> Self {
+    pub(super) fn of_terms(terms: [f64; 6]) -> Self {
         let [
             external_work,
             elastic_energy,

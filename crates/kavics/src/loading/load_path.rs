@@ -14,9 +14,10 @@ use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::{System, is_set};
 use crate::equilibrium::{
-    Equilibrium, Iteration, Settings, SolveError, Stability, State, second_order_work,
+    Equilibrium, Iteration, Settings, SolveError, Stability, State, Warning, Watch,
+    second_order_work,
 };
-use crate::ids::PerProperty;
+use crate::ids::{PerGrain, PerProperty};
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
 pub(super) const COLLAPSE: f64 = 1e-4;
@@ -54,6 +55,8 @@ pub struct LoadPath<'a> {
     pub(super) last: Last,
     /// Where the path stood before the present attempt, which may be stopped.
     pub(super) kept: Option<Box<Boundary>>,
+    /// Grains set aside before loading.
+    aside_before: usize,
 }
 
 /// Factors at the two ends of a load step.
@@ -119,6 +122,7 @@ impl<'a> LoadPath<'a> {
     ) -> Self {
         let mut system = System::new(assembly, properties, settings, &advance::bound(program));
         let point = advance::undeformed(&mut system, program);
+        let aside_before = aside_count(&point.set_aside);
         let mut path = Self {
             system,
             program,
@@ -133,6 +137,7 @@ impl<'a> LoadPath<'a> {
             steered: Steered::default(),
             last: Last::default(),
             kept: None,
+            aside_before,
         };
         let way = Way {
             events: advance::first_events(&path.point),
@@ -179,7 +184,7 @@ impl<'a> LoadPath<'a> {
             self.forget_kept();
         }
         let next = self.waiting.pop_front()?;
-        Some(next.map(|equilibrium| Station::Equilibrium(Box::new(equilibrium))))
+        Some(next.map(|equilibrium| Station::Equilibrium(Box::new(self.warned(equilibrium)))))
     }
 
     /// Keeps where the path stands, if it may be stopped before it stands elsewhere.
@@ -207,6 +212,7 @@ impl<'a> LoadPath<'a> {
 
     /// Goes through the next load step; false: to an event in it. None where no load step is left.
     fn go_on(&mut self) -> Option<bool> {
+        self.system.watch.begin(self.step + 1);
         if self.breakage == Breakage::EventDriven {
             return self.take_events();
         }
@@ -222,6 +228,11 @@ impl<'a> LoadPath<'a> {
     /// Number of unknown displacements and rotations.
     pub fn unknowns(&self) -> usize {
         self.system.unknowns()
+    }
+
+    /// A window on the load step that is sought, to be read from another thread.
+    pub fn watch(&self) -> Arc<Watch> {
+        Arc::clone(&self.system.watch)
     }
 
     fn next_load_step(&mut self) -> Option<LoadStep> {
@@ -283,13 +294,12 @@ impl<'a> LoadPath<'a> {
 
     /// Goes on with a load step event by event; whether it is finished.
     fn take_events(&mut self) -> Option<bool> {
-        let mut unfinished = match self.unfinished.take() {
-            Some(unfinished) => unfinished,
-            None => {
-                let load_step = self.next_load_step()?;
-                self.step += 1;
-                Unfinished::new(load_step)
-            }
+        let mut unfinished = if let Some(unfinished) = self.unfinished.take() {
+            unfinished
+        } else {
+            let load_step = self.next_load_step()?;
+            self.step += 1;
+            Unfinished::new(load_step)
         };
         let (system, point) = (&mut self.system, &mut self.point);
         let reached = self
@@ -418,6 +428,26 @@ impl<'a> LoadPath<'a> {
         }
     }
 
+    /// With the warnings that the equilibrium itself gives rise to.
+    fn warned(&self, mut equilibrium: Equilibrium) -> Equilibrium {
+        let grains = aside_count(&equilibrium.set_aside);
+        if equilibrium.step == 0 {
+            return equilibrium;
+        }
+        let warnings = &mut equilibrium.warnings;
+        if equilibrium.cuts > 0 {
+            let cuts = equilibrium.cuts;
+            warnings.push(Warning::StepCut { cuts });
+        }
+        if grains > self.aside_before {
+            warnings.push(Warning::SetAside { grains });
+        }
+        if self.wants_modes() && equilibrium.stability.is_none() {
+            warnings.push(Warning::NoModes);
+        }
+        equilibrium
+    }
+
     fn wants_modes(&self) -> bool {
         self.system.settings.modes > 0
     }
@@ -430,6 +460,10 @@ impl<'a> LoadPath<'a> {
         stability.summary.second_order_work = second_order_work(before, &configuration.state());
         Some(stability)
     }
+}
+
+fn aside_count(set_aside: &PerGrain<bool>) -> usize {
+    set_aside.values().iter().filter(|&&aside| aside).count()
 }
 
 impl Iterator for LoadPath<'_> {

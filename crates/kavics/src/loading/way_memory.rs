@@ -4,10 +4,10 @@ use super::Program;
 use super::advance::Way;
 use super::load_path::LoadStep;
 use super::work::Account;
-use crate::equilibrium::configuration::Progress;
+use crate::equilibrium::configuration::{Longest, Progress};
 use crate::equilibrium::configuration_memory::{mode_code, mode_of};
 use crate::equilibrium::memory::{Memory, MemoryError, count};
-use crate::equilibrium::{Breakdown, Event, EventKind, Warning};
+use crate::equilibrium::{Breakdown, Drive, Event, EventKind, Warning};
 use crate::ids::{ContactId, GrainId};
 
 impl LoadStep {
@@ -64,6 +64,10 @@ impl Way {
             progress.iterations,
             progress.held_pivots,
             account.iterations,
+            progress.chattered,
+            progress.longest.iterations,
+            progress.longest.limit,
+            usize::from(progress.uncounted),
         ];
         memory.put(COUNTS, counts.map(|n| n as i64).to_vec());
         let numbers = [
@@ -81,26 +85,33 @@ impl Way {
         );
         memory.put(EVENT_KINDS, events.flat_map(event_kind).collect());
         let warnings = self.warnings.iter();
-        memory.put(WARNINGS, warnings.flat_map(|w| w.numbers()).collect());
+        memory.put(WARNINGS, warnings.flat_map(Warning::numbers).collect());
     }
 
     /// Reads what has happened.
     pub fn read(memory: &Memory) -> Result<Self, MemoryError> {
-        let [iterations, held_pivots, for_work] = memory.fixed::<i64, 3>(COUNTS)?;
+        let counts = memory.fixed::<i64, 7>(COUNTS)?;
+        let at = |place: usize| count(COUNTS, counts[place]);
         let [residual, scale, error, softened] = memory.fixed(NUMBERS)?;
         let warnings = memory.list::<f64>(WARNINGS)?.unwrap_or_default();
-        let warnings = warnings.as_chunks::<2>().0.iter();
+        let warnings = warnings.as_chunks::<3>().0.iter();
         Ok(Self {
             events: events(memory)?,
             warnings: warnings.filter_map(|w| Warning::of_numbers(*w)).collect(),
             progress: Progress {
-                iterations: count(COUNTS, iterations)?,
+                iterations: at(0)?,
                 residual,
-                held_pivots: count(COUNTS, held_pivots)?,
+                held_pivots: at(1)?,
+                chattered: at(3)?,
+                longest: Longest {
+                    iterations: at(4)?,
+                    limit: at(5)?,
+                },
+                uncounted: at(6)? > 0,
                 iterates: Vec::new(),
             },
             account: Account {
-                iterations: count(COUNTS, for_work)?,
+                iterations: at(2)?,
                 scale,
                 error,
             },
@@ -123,15 +134,20 @@ fn event_ids(event: &Event) -> [i64; 3] {
     [event.iteration as i64, i64::from(id), avalanche]
 }
 
-fn event_numbers(event: &Event) -> [f64; 3] {
-    match event.kind {
+/// Load factor, energies, drive; the last not a number where there is none.
+fn event_numbers(event: &Event) -> [f64; 5] {
+    let [displacement, force] = event
+        .drive
+        .map_or([f64::NAN; 2], |drive| [drive.displacement, drive.force]);
+    let [fracture, release] = match event.kind {
         EventKind::Broke {
             fracture_energy,
             release_energy,
             ..
-        } => [event.load_factor, fracture_energy, release_energy],
-        _ => [event.load_factor, 0.0, 0.0],
-    }
+        } => [fracture_energy, release_energy],
+        _ => [0.0; 2],
+    };
+    [event.load_factor, fracture, release, displacement, force]
 }
 
 /// Kind and mode.
@@ -151,18 +167,24 @@ fn events(memory: &Memory) -> Result<Vec<Event>, MemoryError> {
     let kinds = memory.list::<u8>(EVENT_KINDS)?.unwrap_or_default();
     let (kinds, _) = kinds.as_chunks::<2>();
     let ids = memory.column::<i64>(EVENT_IDS, 3 * kinds.len())?;
-    let numbers = memory.column::<f64>(EVENT_NUMBERS, 3 * kinds.len())?;
+    let numbers = memory.column::<f64>(EVENT_NUMBERS, 5 * kinds.len())?;
     let rows = kinds.iter().zip(ids.as_chunks::<3>().0);
-    rows.zip(numbers.as_chunks::<3>().0)
+    rows.zip(numbers.as_chunks::<5>().0)
         .map(|((kind, ids), numbers)| event(*kind, *ids, *numbers))
         .collect()
 }
 
-fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 3]) -> Result<Event, MemoryError> {
+fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 5]) -> Result<Event, MemoryError> {
     let unfit = || MemoryError::unfit(EVENT_KINDS);
     let id = u32::try_from(ids[1]).map_err(|_| unfit())?;
     let (contact, grain) = (ContactId(id), GrainId(id));
-    let [load_factor, fracture_energy, release_energy] = numbers;
+    let [
+        load_factor,
+        fracture_energy,
+        release_energy,
+        displacement,
+        force,
+    ] = numbers;
     Ok(Event {
         iteration: count(EVENT_IDS, ids[0])?,
         load_factor,
@@ -182,27 +204,38 @@ fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 3]) -> Result<Event, Memor
             _ => return Err(unfit()),
         },
         avalanche: usize::try_from(ids[2]).ok(),
+        drive: (!displacement.is_nan()).then_some(Drive {
+            displacement,
+            force,
+        }),
     })
 }
 
 impl Warning {
-    /// The warning as its kind and its size.
-    pub fn numbers(&self) -> [f64; 2] {
+    /// The warning as its kind and its sizes.
+    pub fn numbers(&self) -> [f64; 3] {
+        let of = |kind: f64, size: usize| [kind, size as f64, 0.0];
         match self {
-            Self::RegularisedPivots { count } => [0.0, *count as f64],
-            Self::ShearFloor { contacts } => [1.0, *contacts as f64],
+            Self::RegularisedPivots { count } => of(0.0, *count),
+            Self::ShearFloor { contacts } => of(1.0, *contacts),
             Self::SolvedDirectly { breakdown } => match breakdown {
-                Breakdown::NotPositive => [2.0, 0.0],
-                Breakdown::Stagnated => [2.0, 1.0],
+                Breakdown::NotPositive => of(2.0, 0),
+                Breakdown::Stagnated => of(2.0, 1),
             },
-            Self::SecondOrderWork { contacts } => [3.0, *contacts as f64],
-            Self::WorkError { relative } => [4.0, *relative],
-            Self::Separated => [5.0, 0.0],
+            Self::SecondOrderWork { contacts } => of(3.0, *contacts),
+            Self::WorkError { relative } => [4.0, *relative, 0.0],
+            Self::Separated => of(5.0, 0),
+            Self::StepCut { cuts } => of(6.0, *cuts),
+            Self::SetAside { grains } => of(7.0, *grains),
+            Self::Chattered { contacts } => of(8.0, *contacts),
+            Self::ManyIterations { iterations, limit } => [9.0, *iterations as f64, *limit as f64],
+            Self::NoModes => of(10.0, 0),
+            Self::FloppyModesUncounted => of(11.0, 0),
         }
     }
 
-    /// The warning of a kind and a size; none where no warning is of that kind.
-    pub fn of_numbers([kind, size]: [f64; 2]) -> Option<Self> {
+    /// The warning of a kind and its sizes; none where no warning is of that kind.
+    pub fn of_numbers([kind, size, other]: [f64; 3]) -> Option<Self> {
         let count = size as usize;
         Some(match kind as i64 {
             0 => Self::RegularisedPivots { count },
@@ -217,6 +250,15 @@ impl Warning {
             3 => Self::SecondOrderWork { contacts: count },
             4 => Self::WorkError { relative: size },
             5 => Self::Separated,
+            6 => Self::StepCut { cuts: count },
+            7 => Self::SetAside { grains: count },
+            8 => Self::Chattered { contacts: count },
+            9 => Self::ManyIterations {
+                iterations: count,
+                limit: other as usize,
+            },
+            10 => Self::NoModes,
+            11 => Self::FloppyModesUncounted,
             _ => return None,
         })
     }

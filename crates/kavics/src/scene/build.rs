@@ -22,6 +22,7 @@ use crate::assembly::{Assembly, Contact, Partner};
 use crate::contact_law::Property;
 use crate::ids::{GrainId, Id, PerGrain};
 use crate::loading::{Action, Program, Stage};
+use crate::warning::WarningKind;
 
 /// All that can be known of a scene before its grains are placed.
 struct Plan {
@@ -175,6 +176,7 @@ fn build(
         record_every: plan.run.record_every,
         record_voids: plan.run.record_voids,
         record_cracks: plan.run.record_cracks,
+        record_columns: plan.run.record_columns,
         compare: plan.run.compare,
         warnings: Vec::new(),
         text: String::new(),
@@ -182,6 +184,30 @@ fn build(
 }
 
 fn window(
+    plan: &WindowPlan,
+    assembly: &Assembly,
+    program: &Program,
+    checker: &mut Checker,
+) -> Vec<GrainId> {
+    let window = choose_window(plan, assembly, program, checker);
+    if !matches!(plan, WindowPlan::Undisturbed) && !window.is_empty() {
+        let disturbed = disturbed(assembly, program);
+        let touching = window.iter().filter(|grain| disturbed[**grain]).count();
+        if touching > 0 {
+            checker.warn(
+                WarningKind::WindowAtBoundary,
+                format!(
+                    "{touching} of the {} grains of the window are held, moved, loaded or at a side: its measures hold what \
+                     these do to the assembly",
+                    window.len()
+                ),
+            );
+        }
+    }
+    window
+}
+
+fn choose_window(
     plan: &WindowPlan,
     assembly: &Assembly,
     program: &Program,
@@ -209,9 +235,11 @@ fn window(
             window
         }
         WindowPlan::Undisturbed => {
-            let window = undisturbed(assembly, program);
+            let disturbed = disturbed(assembly, program);
+            let window: Vec<GrainId> = grains.ids().filter(|id| !disturbed[*id]).collect();
             if window.is_empty() {
                 checker.warn(
+                    WarningKind::WindowEmpty,
                     "the window is empty: every grain has a support, a move, a load or a side contact",
                 );
             }
@@ -220,8 +248,8 @@ fn window(
     }
 }
 
-/// Grains without support, prescribed motion, load (weight does not count) and side contact.
-fn undisturbed(assembly: &Assembly, program: &Program) -> Vec<GrainId> {
+/// Grains with support, prescribed motion, load (weight does not count) or side contact.
+fn disturbed(assembly: &Assembly, program: &Program) -> PerGrain<bool> {
     let mut disturbed = PerGrain::filled(false, assembly.grains.len());
     let weight = program.actions.iter().position(|a| a.name == "weight");
     let held = program.held.iter().map(|held| held.body);
@@ -240,6 +268,5 @@ fn undisturbed(assembly: &Assembly, program: &Program) -> Vec<GrainId> {
     for grain in grains.chain(at_sides.flat_map(Contact::grains)) {
         disturbed.values_mut()[grain.index()] = true;
     }
-    let disturbed = &disturbed;
-    assembly.grains.ids().filter(|id| !disturbed[*id]).collect()
+    disturbed
 }

@@ -6,11 +6,17 @@ use super::check_softening;
 use super::checker::Checker;
 use super::diagnostic::{Problem, short};
 use super::sides::side_called;
-use crate::assembly::{self, Assembly, Bodies, Contact, ContactGraph, Partner, Side, Site};
+use crate::assembly::{
+    self, Assembly, Bodies, Contact, ContactGraph, DualLength, Partner, Side, Site,
+};
 use crate::contact_law::{Cemented, Cohesionless, Law, StiffnessRule, StrengthKind};
 use crate::geometry::Vector;
 use crate::ids::{PerContact, PerSide, PropertyId};
 use crate::packing::{Purpose, Stream, random::stream};
+use crate::warning::WarningKind;
+
+/// Ends that take less than this share of a dual length are rounding.
+const CAPPED: f64 = 1e-9;
 
 /// The assembly: grains, sides, contacts and dual graph.
 pub fn assembly(
@@ -48,6 +54,7 @@ pub fn assembly(
         thickness,
     };
     if dual_lengths(plan, &assembly, checker) {
+        capped_lengths(plan, &assembly, checker);
         tension_limits(plan, &assembly, checker);
         check_softening::brittle_bonds(&plan.properties, &assembly, checker);
     }
@@ -94,10 +101,13 @@ fn sides_touch(
                 )
                 .and(&side_plan.span, "this side"),
             ),
-            _ => checker.warn(format!(
-                "no grain touches {}; the nearest is {nearest} mean radii away",
-                side_called(&side.name)
-            )),
+            _ => checker.warn(
+                WarningKind::SideUntouched,
+                format!(
+                    "no grain touches {}; the nearest is {nearest} mean radii away",
+                    side_called(&side.name)
+                ),
+            ),
         }
     }
 }
@@ -117,11 +127,14 @@ fn warn_of_grains_behind(
         .map(|grain| side.distance(grain.centre) - grain.radius);
     let within = gaps.filter(|gap| *gap <= reach).count();
     if within > joined {
-        checker.warn(format!(
-            "{} grains within reach of {} are not joined to it: others lie between",
-            within - joined,
-            side_called(&side.name)
-        ));
+        checker.warn(
+            WarningKind::SideHidden,
+            format!(
+                "{} grains within reach of {} are not joined to it: others lie between",
+                within - joined,
+                side_called(&side.name)
+            ),
+        );
     }
 }
 
@@ -199,9 +212,12 @@ fn empty_zone(zone: &ZonePlan, plan: &ContactsPlan, met: Met<'_>, checker: &mut 
     let expected = match zone.place {
         ZonePlace::Everywhere => {
             let name = &plan.properties[zone.property].property.name;
-            checker.warn(format!(
-                "the zone of `{name}` gives it to no contact: there is none between grains"
-            ));
+            checker.warn(
+                WarningKind::ZoneEmpty,
+                format!(
+                    "the zone of `{name}` gives it to no contact: there is none between grains"
+                ),
+            );
             return;
         }
         ZonePlace::Share(share) if count > 0 => {
@@ -311,17 +327,40 @@ fn contacts(
         .collect()
 }
 
+/// Whether the stiffness of a property is that of each contact, whatever its dual length.
+fn is_direct(plan: &ContactsPlan, id: PropertyId) -> bool {
+    let (Law::Cemented(Cemented { stiffness, .. })
+    | Law::Cohesionless(Cohesionless { stiffness, .. })) = &plan.properties[id].property.law;
+    matches!(stiffness, StiffnessRule::Direct { .. })
+}
+
+/// Warns of dual lengths that end where the tangent leaves the hull of the two grains.
+fn capped_lengths(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checker) {
+    let capped = |contact: &&Contact| {
+        let property = contact.property;
+        plan.properties[property].shaping.dual_length == DualLength::Capped
+            && contact.dual_length() < contact.dual_length_full * (1.0 - CAPPED)
+            && !is_direct(plan, property)
+    };
+    let contacts = assembly.contacts.values();
+    let count = contacts.iter().filter(capped).count();
+    if count > 0 {
+        checker.warn(
+            WarningKind::DualLengthCapped,
+            format!(
+                "dual lengths of {count} of {} contacts are capped, and their stiffness with them",
+                contacts.len()
+            ),
+        );
+    }
+}
+
 /// A contact whose stiffness comes from its dual length must have one.
 fn dual_lengths(plan: &ContactsPlan, assembly: &Assembly, checker: &mut Checker) -> bool {
-    let is_direct = |id: PropertyId| {
-        let (Law::Cemented(Cemented { stiffness, .. })
-        | Law::Cohesionless(Cohesionless { stiffness, .. })) = &plan.properties[id].property.law;
-        matches!(stiffness, StiffnessRule::Direct { .. })
-    };
     let without = assembly
         .contacts
         .iter()
-        .find(|(_, contact)| contact.dual_length() <= 0.0 && !is_direct(contact.property));
+        .find(|(_, contact)| contact.dual_length() <= 0.0 && !is_direct(plan, contact.property));
     if let Some((id, contact)) = without {
         let property = &plan.properties[contact.property];
         checker.push(

@@ -17,6 +17,7 @@ use crate::assembly::{Assembly, Grain, Partner, envelope, middle};
 use crate::equilibrium::{Freedom, Load};
 use crate::ids::{BodyId, GrainId, SideId};
 use crate::loading::{Action, AppliedLoad, Held, Prescribed, Program, Stage};
+use crate::warning::WarningKind;
 
 /// What determines a freedom.
 #[derive(Clone, Debug)]
@@ -271,7 +272,7 @@ impl Loading<'_> {
                         "expected an edge with grains before it",
                     ));
                 } else if uncovered > 1e-9 * side.length() {
-                    checker.warn(format!(
+                    checker.warn(WarningKind::LoadUncovered, format!(
                         "load `{}`: no grain is met over {} of the {} of {}; nothing acts there",
                         load.name.value,
                         short(uncovered),

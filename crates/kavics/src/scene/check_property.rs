@@ -17,6 +17,7 @@ use super::value::{Number, Placed};
 use crate::assembly::{ContactPoint, DualLength, Shaping};
 use crate::contact_law::{Cemented, Cohesionless, Law, Property, Reading, StiffnessRule, Strength};
 use crate::ids::{Id, PerProperty, PropertyId};
+use crate::warning::WarningKind;
 
 /// A contact property with what shapes its contacts.
 #[derive(Clone, Debug)]
@@ -189,7 +190,7 @@ fn cemented(
 fn warn_of_lost_shear(name: &str, law: &Cemented, checker: &mut Checker) {
     if law.shear_hardening > 0.0 && law.shear_floor.is_none() && law.strength.tension.is_infinite()
     {
-        checker.warn(format!(
+        checker.warn(WarningKind::ShearMayVanish, format!(
             "contact `{name}` has shear_hardening but neither a limit of tension nor a shear_floor: its shear modulus may \
              fall to zero under tension, which ends the run"
         ));
@@ -223,7 +224,7 @@ fn cohesionless(
         friction: friction?,
     };
     if law.friction.is_none() {
-        checker.warn(format!(
+        checker.warn(WarningKind::NoFriction, format!(
             "contact `{}` has no friction: as the law is printed, its shear force jumps to zero where it opens",
             name.value
         ));

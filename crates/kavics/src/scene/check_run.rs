@@ -8,6 +8,7 @@ use super::checker::{Bound, Checker};
 use super::diagnostic::Problem;
 use super::file::{EquilibriumFile, MeasureFile, SceneFile, WindowFile};
 use super::named_file::named_file;
+use super::record_columns::{RecordColumns, record_columns};
 use super::unit::Dimension;
 use super::value::{Number, Placed, Quantity, ValueOr};
 use crate::equilibrium::{Iteration, Settings, SolverChoice};
@@ -30,6 +31,8 @@ pub struct RunPlan {
     pub record_voids: bool,
     /// Whether cracks are recorded with them.
     pub record_cracks: bool,
+    /// Columns of grains and contacts that are recorded.
+    pub record_columns: RecordColumns,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
 }
@@ -66,6 +69,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
     let record = file.record.as_ref().map(|record| &record.value);
     let every = record.and_then(|record| record.every.as_ref());
     let record_every = every.map_or(Some(1), |every| checker.count(every, "every", 1));
+    let columns = record.map(|record| record_columns(record, checker));
     let compare = match &file.compare {
         None => Some(None),
         Some(table) => named_file(&table.value.file, folder, "a csv file", checker).map(Some),
@@ -84,6 +88,7 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
         record_every: record_every?,
         record_voids: record.and_then(|record| record.voids).unwrap_or(false),
         record_cracks: record.and_then(|record| record.cracks).unwrap_or(false),
+        record_columns: columns.unwrap_or_default(),
         compare: compare?,
     })
 }

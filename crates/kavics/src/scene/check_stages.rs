@@ -7,6 +7,7 @@ use super::loading_plan::LoadingPlan;
 use super::unit::Dimension;
 use super::value::{ListOr, Number, Placed};
 use crate::loading::{Action, Stage};
+use crate::warning::WarningKind;
 
 /// The actions of a scene, moves first, then loads, then the weight.
 pub fn actions(plan: &LoadingPlan) -> Vec<Action> {
@@ -47,10 +48,10 @@ pub fn stages(file: &SceneFile, actions: &[Action], checker: &mut Checker) -> Op
     let stages: Vec<Stage> = stages.into_iter().collect::<Option<_>>()?;
     for (index, action) in actions.iter().enumerate() {
         if !stages.iter().any(|stage| stage.actions.contains(&index)) {
-            checker.warn(format!(
-                "no stage applies `{}`: it stays at zero",
-                action.name
-            ));
+            checker.warn(
+                WarningKind::ActionUnused,
+                format!("no stage applies `{}`: it stays at zero", action.name),
+            );
         }
     }
     Some(stages)

@@ -1,5 +1,6 @@
 //! Checks that many parts of a scene share; each adds what is wrong to the list and answers nothing then.
 
+use std::fmt::Display;
 use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use super::file::SceneFile;
 use super::sides::SideNames;
 use super::unit::{self, Dimension, UnitError};
 use super::value::{Number, Placed, Quantity};
+use crate::warning::WarningKind;
 
 /// Which values a number may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,8 +55,8 @@ impl Checker {
     }
 
     /// Adds a warning.
-    pub fn warn(&mut self, warning: impl Into<String>) {
-        self.warnings.push(warning.into());
+    pub fn warn(&mut self, kind: WarningKind, warning: impl Display) {
+        self.warnings.push(kind.says(warning));
     }
 
     /// All that went wrong; mistakes come before a file that could not be read.

@@ -280,6 +280,10 @@ pub struct RecordFile {
     pub voids: Option<bool>,
     /// Whether the cracks of these load steps are recorded too; not when absent.
     pub cracks: Option<bool>,
+    /// Columns of the tables of grains after loading has begun, besides `step` and `grain`; all when absent.
+    pub grains: Option<Vec<Placed<String>>>,
+    /// Columns of the tables of contacts after loading has begun, besides `step` and `contact`; all when absent.
+    pub contacts: Option<Vec<Placed<String>>>,
 }
 
 /// Table to set beside the run.

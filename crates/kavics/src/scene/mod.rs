@@ -33,11 +33,14 @@ mod fitting;
 mod grain_list;
 mod loading_plan;
 mod named_file;
+mod record_columns;
 mod rigid_motion;
 mod scatter;
 mod sides;
 mod unit;
 mod value;
+
+pub use record_columns::{CONTACT_COLUMNS, GRAIN_COLUMNS, RecordColumns};
 
 use std::path::{Path, PathBuf};
 
@@ -79,6 +82,8 @@ pub struct Scene {
     pub record_voids: bool,
     /// Whether cracks are recorded with them.
     pub record_cracks: bool,
+    /// Columns of grains and contacts that are recorded.
+    pub record_columns: RecordColumns,
     /// Table to set beside the run.
     pub compare: Option<PathBuf>,
     /// What the user should know before the run.

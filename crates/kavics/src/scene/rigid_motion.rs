@@ -10,6 +10,7 @@ use crate::equilibrium::{Freedom, Load};
 use crate::geometry::{Pieces, Vector};
 use crate::ids::{BodyId, GrainId, Id};
 use crate::loading::Program;
+use crate::warning::WarningKind;
 
 /// A piece: bodies joined by contacts.
 #[derive(Clone, Debug, Default)]
@@ -67,9 +68,10 @@ pub fn check(assembly: &Assembly, program: &Program, place: &Range<usize>, check
         } else {
             "grains are"
         };
-        checker.warn(format!(
-            "{rattlers} {grains} neither held nor loaded, and set aside"
-        ));
+        checker.warn(
+            WarningKind::SetAside,
+            format!("{rattlers} {grains} neither held nor loaded, and set aside"),
+        );
     }
 }
 

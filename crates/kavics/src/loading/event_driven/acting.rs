@@ -1,7 +1,7 @@
 //! What acts from outside along a load step, on a straight line.
 
 use crate::equilibrium::configuration::Action;
-use crate::equilibrium::{Freedom, Load};
+use crate::equilibrium::{ALL_FREEDOMS, Displacement, Drive, Freedom, Load};
 use crate::ids::{BodyId, Id};
 use crate::loading::Program;
 use crate::loading::advance;
@@ -58,6 +58,45 @@ impl Acting {
         self.load_factor[0] + x * self.load_factor[1]
     }
 
+    /// How far what varies has gone at x, by the displacements of all that is loaded and the reactions of all that is
+    /// moved. None where both vary, or not from zero.
+    pub fn drive(
+        &self,
+        x: f64,
+        displacements: impl Iterator<Item = (BodyId, Displacement)>,
+        reactions: impl Iterator<Item = f64>,
+    ) -> Option<Drive> {
+        let loads = displacements.flat_map(|(body, u)| {
+            let rate = self.loads[body.index()][1].components();
+            ALL_FREEDOMS
+                .into_iter()
+                .zip(rate.into_iter().zip(u.components()))
+        });
+        let moves = self.moved.iter().zip(reactions);
+        let moves = moves.map(|((_, freedom, value), reaction)| (*freedom, (value[1], reaction)));
+        let loads = of_one_dimension(loads.collect());
+        let moves = of_one_dimension(moves.collect());
+        if self.load_factor != [0.0, 1.0] {
+            return None;
+        }
+        let whole = |parts: &[(f64, f64)]| parts.iter().map(|part| part.0.abs()).sum::<f64>();
+        let work = |parts: &[(f64, f64)]| parts.iter().map(|part| part.0 * part.1).sum::<f64>();
+        match (loads.is_empty(), moves.is_empty()) {
+            (false, true) => Some(Drive {
+                displacement: work(&loads) / whole(&loads),
+                force: x * whole(&loads),
+            }),
+            (true, false) => {
+                let mean = whole(&moves) / moves.len() as f64;
+                Some(Drive {
+                    displacement: x * mean,
+                    force: work(&moves) / mean,
+                })
+            }
+            _ => None,
+        }
+    }
+
     /// The factor of each action at x.
     pub fn factors(&self, x: f64) -> Vec<f64> {
         self.factors.iter().map(|[a, b]| a + x * b).collect()
@@ -67,6 +106,15 @@ impl Acting {
     pub fn at(&self, program: &Program, x: f64) -> Action {
         advance::action(program, &self.factors(x), self.loads.len())
     }
+}
+
+/// Sizes that vary, with what belongs to each; of rotations only where nothing else varies.
+fn of_one_dimension(mut parts: Vec<(Freedom, (f64, f64))>) -> Vec<(f64, f64)> {
+    parts.retain(|part| part.1.0 != 0.0);
+    if parts.iter().any(|part| part.0 != Freedom::Rotation) {
+        parts.retain(|part| part.0 != Freedom::Rotation);
+    }
+    parts.into_iter().map(|part| part.1).collect()
 }
 
 /// Where a load step starts and ends, in x.

@@ -7,9 +7,10 @@ use crate::contact_law::{ContactForce, Mode, RelativeDisplacement};
 use crate::equilibrium::bond::Bond;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::elastic::Entries;
-use crate::equilibrium::{Displacement, Event, EventKind, Iterate};
+use crate::equilibrium::{Displacement, Energy, Event, EventKind, Iterate};
 use crate::ids::{ContactId, Id};
 use crate::loading::advance;
+use crate::loading::ledger;
 
 /// The factor is made anew after so many events.
 const MOST_EVENTS: usize = 512;
@@ -135,9 +136,9 @@ impl Walk<'_, '_> {
             set_aside: self.system.set_aside.clone(),
             proportional: was_proportional,
         };
-        self.leave_out();
+        let loose = self.leave_out();
         let network = &mut self.course.network;
-        network.freeze(self.system, &before.set_aside, self.x);
+        network.freeze(self.system, &before.set_aside, &loose, self.x);
         if self.factorise() && self.balance(MOST_SOLVES) {
             return Ok(());
         }
@@ -169,6 +170,8 @@ impl Walk<'_, '_> {
         let load_factor = self.load_factor();
         let direction = self.run.direction;
         let avalanche = Some(self.run.avalanche(direction * self.x));
+        let course = &self.course;
+        let drive = course.places.drive(&course.network, &self.outer, self.x);
         let released = self.release(broken);
         for (broken, release_energy) in broken.iter().zip(released) {
             self.point.energy.fracture_energy += broken.fracture_energy;
@@ -183,8 +186,13 @@ impl Walk<'_, '_> {
                     release_energy,
                 },
                 avalanche,
+                drive,
             });
         }
+        let watch = &self.system.watch;
+        watch.note_broken(broken.len());
+        watch.note_load_factor(load_factor);
+        watch.note_iteration(self.way.progress.iterations, self.point.residual);
         if may_be_loose {
             self.note_set_aside(load_factor, avalanche);
         }
@@ -230,6 +238,7 @@ impl Walk<'_, '_> {
             load_factor,
             kind,
             avalanche,
+            drive: None,
         }));
         self.point.set_aside = now;
     }
@@ -258,10 +267,15 @@ impl Walk<'_, '_> {
         let mut configuration = self.point.configuration.clone();
         let network = &self.course.network;
         network.write(self.system, &mut configuration, self.x);
+        let energy = Energy {
+            elastic_energy: ledger::elastic_energy(&configuration, self.system.properties),
+            ..self.point.energy
+        };
         self.way.progress.iterates.push(Iterate {
             iteration: self.way.progress.iterations,
             residual: self.point.residual,
             state: configuration.state(),
+            ledger: Some((self.load_factor(), energy)),
         });
     }
 }

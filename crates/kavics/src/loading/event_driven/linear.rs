@@ -278,8 +278,8 @@ impl Walk<'_, '_> {
         self.course.network.acting.load_factor(self.x)
     }
 
-    /// Leaves out what nothing holds and nothing on this line loads.
-    pub fn leave_out(&mut self) {
+    /// Leaves out what nothing holds and nothing on this line loads; answers the loose pieces of more than one body.
+    pub fn leave_out(&mut self) -> Vec<Vec<BodyId>> {
         let acting = &self.course.network.acting;
         let ever = acting.loads.iter().map(|[constant, rate]| {
             let mut sum = constant.magnitude();
@@ -288,7 +288,7 @@ impl Walk<'_, '_> {
         });
         let ever: PerBody<Load> = ever.collect();
         let bonds = &self.point.configuration.bonds;
-        self.system.leave_out_loose_pieces(bonds, &ever);
+        self.system.leave_out_loose_pieces(bonds, &ever)
     }
 
     /// A factor of the bonds as they are.

@@ -79,7 +79,7 @@ impl Course {
         self.line.write("course", memory);
         for (part, name) in PARTS.into_iter().enumerate() {
             let u = self.network.displacements.iter();
-            memory.put_triples(name, u.map(|pair| pair[part].components()));
+            memory.put_triples(name, &u.map(|pair| pair[part].components()));
         }
         let events = i64::try_from(self.events).unwrap_or(-1);
         let proportional = i64::from(code(self.network.proportional));

@@ -71,12 +71,18 @@ impl Network {
         self.enter_moves();
     }
 
-    /// What has just been set aside stays where it is at x, but for what is moved.
-    pub fn freeze(&mut self, system: &System<'_>, before: &[bool], x: f64) {
+    /// What has just been set aside stays where it is at x, loose pieces as a whole, but for what is moved.
+    pub fn freeze(&mut self, system: &System<'_>, before: &[bool], loose: &[Vec<BodyId>], x: f64) {
         for (body, set_aside) in before.iter().enumerate() {
             if system.set_aside[body] && !set_aside {
                 let here = self.displacement_at(body, x);
                 self.displacements[body] = [here, Displacement::default()];
+            }
+        }
+        for piece in loose {
+            let motion = system.rigid_motion(piece, |body| self.displacements[body.index()][0]);
+            for &body in piece {
+                self.displacements[body.index()][0] = motion.at(system.place(body));
             }
         }
         self.enter_moves();

@@ -2,7 +2,7 @@
 
 use super::network::Network;
 use crate::equilibrium::system::System;
-use crate::equilibrium::{Displacement, Load};
+use crate::equilibrium::{Displacement, Drive, Load};
 use crate::ids::{BodyId, Id};
 
 /// Loads and reactions with the displacements on which they work.
@@ -40,6 +40,14 @@ impl Outer {
 }
 
 impl OuterPlaces {
+    /// How far what drives the load path has gone where `outer` acts.
+    pub fn drive(&self, network: &Network, outer: &Outer, x: f64) -> Option<Drive> {
+        let loaded = self.loaded.iter().zip(&outer.loads);
+        let displacements = loaded.map(|(&body, (_, u))| (BodyId::from_index(body), *u));
+        let reactions = outer.moved.iter().map(|[reaction, _]| *reaction);
+        network.acting.drive(x, displacements, reactions)
+    }
+
     /// Where a network is loaded and moved.
     pub fn new(system: &System<'_>, network: &Network) -> Self {
         let acting = &network.acting;

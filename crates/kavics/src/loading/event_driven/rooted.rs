@@ -8,9 +8,9 @@
 use super::acting::{self, Acting};
 use super::bracket::Bracket;
 use super::{EventDriven, Reached, Run, Unfinished};
-use crate::equilibrium::Iteration;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::System;
+use crate::equilibrium::{Drive, EventKind, Iteration};
 use crate::loading::advance::{self, Break, Point, Way};
 use crate::loading::load_path::COLLAPSE;
 use crate::loading::{Breakage, Program};
@@ -221,11 +221,28 @@ impl Search<'_, '_> {
         Ok(())
     }
 
+    fn drive(&self) -> Option<Drive> {
+        let Point {
+            configuration,
+            forces,
+            ..
+        } = &*self.point;
+        let displacements = configuration
+            .displacements
+            .iter()
+            .map(|(body, u)| (body, *u));
+        let moved = self.acting.moved.iter();
+        let reactions =
+            moved.map(|(body, freedom, _)| forces.reactions[*body].components()[freedom.index()]);
+        self.acting.drive(self.x, displacements, reactions)
+    }
+
     /// Breaks bonds together where the factor stands.
     fn break_bonds(&mut self, broken: &[Break]) -> Result<(), Failure> {
         let action = self.acting.at(self.program, self.x);
         let load_factor = self.acting.load_factor(self.x);
         let before = self.way.events.len();
+        let drive = self.drive();
         let next = advance::break_bonds(
             self.system,
             self.point,
@@ -248,6 +265,9 @@ impl Search<'_, '_> {
         let avalanche = self.run.avalanche(self.run.direction * self.x);
         for event in &mut self.way.events[before..] {
             event.avalanche = Some(avalanche);
+            if matches!(event.kind, EventKind::Broke { .. }) {
+                event.drive = drive;
+            }
         }
         self.went_on = true;
         Ok(())

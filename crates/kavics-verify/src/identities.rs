@@ -1,30 +1,33 @@
 //! Identities recomputed from the tables alone. Each answers one number, relative where it can be.
 
-use super::Run;
-use super::tables::{ContactRow, Half, Tables, Vector};
+use crate::run::Run;
+use crate::tables::{ContactRow, Half, Tables, Vector};
 
 /// The value of an identity at a load step; `key` holds its parameters.
-pub fn value(name: &str, run: &Run, step: usize, key: &str) -> f64 {
+///
+/// # Errors
+/// Tables that cannot be read, in words.
+pub fn value(name: &str, run: &Run, step: usize, key: &str) -> Result<f64, String> {
     let tables = || Tables::read(run, step);
-    match name {
-        "balance_of_reactions" => balance_of_reactions(&tables(), &numbers(key)),
-        "balance_of_grains" => balance_of_grains(&tables()),
-        "boundary_moment" => boundary_moment(run, &tables(), step),
-        "work_of_contacts" => work_of_contacts(run, &tables(), step),
-        "virtual_work" => virtual_work(&tables()),
-        "stress_parts" => stress_parts(run, &tables(), step),
-        "sum_of_grain_stresses" => sum_of_grain_stresses(run, &tables(), step),
-        "asymmetry" => asymmetry(&tables()),
-        "bending_part" => bending_part(&tables()),
-        "cells_fill" => cells_fill(&tables(), &numbers(key)),
-        "cells_close" => cells_close(&tables(), &numbers(key)),
-        "contacts_are_edges" => contacts_are_edges(&tables()),
-        "order" => order(run, step),
-        "contraction" => contraction(run, step),
-        "largest_motion" => largest_motion(&tables()),
-        "voigt_ratio" => voigt_ratio(&tables(), &numbers(key)),
+    Ok(match name {
+        "balance_of_reactions" => balance_of_reactions(&tables()?, &numbers(key)),
+        "balance_of_grains" => balance_of_grains(&tables()?),
+        "boundary_moment" => boundary_moment(run, &tables()?, step)?,
+        "work_of_contacts" => work_of_contacts(run, &tables()?, step)?,
+        "virtual_work" => virtual_work(&tables()?),
+        "stress_parts" => stress_parts(run, &tables()?, step)?,
+        "sum_of_grain_stresses" => sum_of_grain_stresses(run, &tables()?, step)?,
+        "asymmetry" => asymmetry(&tables()?),
+        "bending_part" => bending_part(&tables()?),
+        "cells_fill" => cells_fill(&tables()?, &numbers(key)),
+        "cells_close" => cells_close(&tables()?, &numbers(key)),
+        "contacts_are_edges" => contacts_are_edges(&tables()?),
+        "order" => order(run, step)?,
+        "contraction" => contraction(run, step)?,
+        "largest_motion" => largest_motion(&tables()?),
+        "voigt_ratio" => voigt_ratio(&tables()?, &numbers(key)),
         other => panic!("no identity is called {other}"),
-    }
+    })
 }
 
 fn numbers(key: &str) -> Vec<f64> {
@@ -37,10 +40,11 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// A column of `steps` at a load step.
-fn at_step(run: &Run, step: usize, column: &str) -> f64 {
-    let steps = run.steps("step");
+fn at_step(run: &Run, step: usize, column: &str) -> Result<f64, String> {
+    let steps = run.steps("step")?;
     let row = steps.iter().position(|other| *other == step as f64);
-    run.steps(column)[row.expect("a load step")]
+    let row = row.ok_or_else(|| format!("there is no load step {step}"))?;
+    Ok(run.steps(column)?[row])
 }
 
 /// Loads and reactions of all grains and sides (of a box width × height) balance.
@@ -95,22 +99,24 @@ fn difference(a: [f64; 4], b: [f64; 4]) -> f64 {
     largest((0..4).map(|k| a[k] - b[k])) / scale
 }
 
-fn stress(run: &Run, step: usize, prefix: &str) -> [f64; 4] {
-    ["xx", "xy", "yx", "yy"].map(|part| at_step(run, step, &format!("{prefix}_{part}")))
+fn stress(run: &Run, step: usize, prefix: &str) -> Result<[f64; 4], String> {
+    let part = |part| at_step(run, step, &format!("{prefix}_{part}"));
+    Ok([part("xx")?, part("xy")?, part("yx")?, part("yy")?])
 }
 
 /// Love and Weber's stress of the whole assembly is the moment of external forces: A·σ = Σ x f.
-fn boundary_moment(run: &Run, tables: &Tables, step: usize) -> f64 {
+fn boundary_moment(run: &Run, tables: &Tables, step: usize) -> Result<f64, String> {
     let loads = tables.grains.iter().map(|g| product(g.centre, g.force));
     let at_sides = tables.contacts.iter().filter(|c| c.second.is_none());
     let from_sides = at_sides.map(|c| product(c.point, c.force));
     let moments = sum(loads.chain(from_sides));
-    let area = at_step(run, step, "window_area");
-    difference(stress(run, step, "stress").map(|s| s * area), moments)
+    let area = at_step(run, step, "window_area")?;
+    let stress = stress(run, step, "stress")?;
+    Ok(difference(stress.map(|s| s * area), moments))
 }
 
 /// Hill: Σ F·Δu is the work of stress on strain and the boundary term, for the columns and for the tables.
-fn work_of_contacts(run: &Run, tables: &Tables, step: usize) -> f64 {
+fn work_of_contacts(run: &Run, tables: &Tables, step: usize) -> Result<f64, String> {
     let between = tables.contacts.iter().filter_map(|c| Some((c, c.second?)));
     let work: f64 = between
         .map(|(c, second)| {
@@ -118,9 +124,10 @@ fn work_of_contacts(run: &Run, tables: &Tables, step: usize) -> f64 {
             c.force.dot(opening)
         })
         .sum();
-    let columns = ["contact_work", "macroscopic_work", "boundary_work"];
-    let [contact, macroscopic, boundary] = columns.map(|c| at_step(run, step, c));
-    largest([contact - work, macroscopic + boundary - work]) / work.abs()
+    let contact = at_step(run, step, "contact_work")?;
+    let macroscopic = at_step(run, step, "macroscopic_work")?;
+    let boundary = at_step(run, step, "boundary_work")?;
+    Ok(largest([contact - work, macroscopic + boundary - work]) / work.abs())
 }
 
 /// Σ Q·v over contacts is Σ f·u over grains and sides.
@@ -142,7 +149,7 @@ fn virtual_work(tables: &Tables) -> f64 {
 }
 
 /// The parts of the stress after Cundall and Strack, on touching discs, over all grains.
-fn stress_parts(run: &Run, tables: &Tables, step: usize) -> f64 {
+fn stress_parts(run: &Run, tables: &Tables, step: usize) -> Result<f64, String> {
     let active: Vec<Half> = tables
         .halves()
         .into_iter()
@@ -153,7 +160,7 @@ fn stress_parts(run: &Run, tables: &Tables, step: usize) -> f64 {
         means[half.grain].0 += half.force.dot(half.normal);
         means[half.grain].1 += 1.0;
     }
-    let area = at_step(run, step, "window_area");
+    let area = at_step(run, step, "window_area")?;
     let mut parts = [[0.0; 4]; 4];
     for half in &active {
         let radius = tables.grains[half.grain].radius / area;
@@ -169,24 +176,27 @@ fn stress_parts(run: &Run, tables: &Tables, step: usize) -> f64 {
             parts[3][k] += radius * normal * unit;
         }
     }
-    let isotropic = at_step(run, step, "isotropic_stress");
+    let isotropic = at_step(run, step, "isotropic_stress")?;
     let read = [
-        stress(run, step, "shear_stress"),
-        stress(run, step, "variation_stress"),
-        stress(run, step, "fabric_stress"),
+        stress(run, step, "shear_stress")?,
+        stress(run, step, "variation_stress")?,
+        stress(run, step, "fabric_stress")?,
         [isotropic, 0.0, 0.0, isotropic],
     ];
     let scale = isotropic.abs();
     let errors = (0..4).flat_map(|i| (0..4).map(move |k| (i, k)));
-    largest(errors.map(|(i, k)| (parts[i][k] - read[i][k]) / scale))
+    Ok(largest(
+        errors.map(|(i, k)| (parts[i][k] - read[i][k]) / scale),
+    ))
 }
 
 /// Σ A_p σ_p over all grains is A·σ.
-fn sum_of_grain_stresses(run: &Run, tables: &Tables, step: usize) -> f64 {
+fn sum_of_grain_stresses(run: &Run, tables: &Tables, step: usize) -> Result<f64, String> {
     let grains = tables.grains.iter();
     let total = sum(grains.map(|g| g.stress.map(|s| s * g.cell_area)));
-    let area = at_step(run, step, "window_area");
-    difference(total, stress(run, step, "stress").map(|s| s * area))
+    let area = at_step(run, step, "window_area")?;
+    let stress = stress(run, step, "stress")?;
+    Ok(difference(total, stress.map(|s| s * area)))
 }
 
 /// Moments of contacts and external moment on each grain.
@@ -284,33 +294,33 @@ fn contacts_are_edges(tables: &Tables) -> f64 {
 }
 
 /// Residuals of the iterates of a load step that are above the floor of rounding.
-fn residuals(run: &Run, step: usize) -> Vec<f64> {
-    let table = run.table("iterations", 0).expect("iterations");
-    let steps = table.numbers("step").expect("steps");
-    let residuals = table.numbers("residual").expect("residuals");
+fn residuals(run: &Run, step: usize) -> Result<Vec<f64>, String> {
+    let table = run.table("iterations", 0)?;
+    let numbers = |column| table.numbers(column).map_err(|error| error.to_string());
+    let (steps, residuals) = (numbers("step")?, numbers("residual")?);
     let pairs = steps.into_iter().zip(residuals);
-    pairs
+    Ok(pairs
         .filter(|(other, residual)| *other == step as f64 && *residual > 1e-14)
         .map(|(_, residual)| residual)
-        .collect()
+        .collect())
 }
 
 /// Order of convergence from the last three residuals.
-fn order(run: &Run, step: usize) -> f64 {
-    let residuals = residuals(run, step);
+fn order(run: &Run, step: usize) -> Result<f64, String> {
+    let residuals = residuals(run, step)?;
     let [.., a, b, c] = residuals[..] else {
-        panic!("three residuals expected: {residuals:?}");
+        return Err(format!("three residuals expected: {residuals:?}"));
     };
-    (c / b).ln() / (b / a).ln()
+    Ok((c / b).ln() / (b / a).ln())
 }
 
 /// Ratio of the last two residuals.
-fn contraction(run: &Run, step: usize) -> f64 {
-    let residuals = residuals(run, step);
+fn contraction(run: &Run, step: usize) -> Result<f64, String> {
+    let residuals = residuals(run, step)?;
     let [.., a, b] = residuals[..] else {
-        panic!("two residuals expected: {residuals:?}");
+        return Err(format!("two residuals expected: {residuals:?}"));
     };
-    b / a
+    Ok(b / a)
 }
 
 fn largest_motion(tables: &Tables) -> f64 {

@@ -13,11 +13,15 @@
 use std::collections::BTreeMap;
 
 use kavics_results::Columns;
+use serde::Serialize;
 
-use super::{Run, identities, packed};
+use crate::run::Run;
+use crate::{identities, packed};
 
 /// A row of `expected.csv`.
+#[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
+    /// Name of the run.
     pub run: &'a str,
     table: &'a str,
     step: &'a str,
@@ -26,6 +30,34 @@ pub struct Row<'a> {
     expected: &'a str,
     tolerance: &'a str,
     kind: &'a str,
+}
+
+/// What was expected, what was found, and whether it holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Name of the validation case.
+    pub case: String,
+    /// Name of the run.
+    pub run: String,
+    /// What was looked at: table, load step, row, column.
+    pub quantity: String,
+    /// A number, a word, or the run that gives the number.
+    pub expected: String,
+    /// The value; of several, the one that is farthest off.
+    pub found: String,
+    /// How the two may differ: `± 1e-12`, `± 1e-12 of it`, `at most`, `at least`, or nothing.
+    pub tolerance: String,
+    /// Share of the tolerance that is used; none where there is no tolerance.
+    pub share: Option<f64>,
+    /// The verdict.
+    pub holds: bool,
+}
+
+/// A value beside the one expected.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    found: f64,
+    expected: f64,
 }
 
 impl<'a> Row<'a> {
@@ -47,71 +79,124 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// What is wrong with a run, if anything.
-    pub fn check(&self, runs: &BTreeMap<String, Run>) -> Result<(), String> {
-        let run = &runs[self.run];
-        let fail = |found: &dyn std::fmt::Display| {
-            let Self {
-                run,
-                table,
-                step,
-                key,
-                column,
-                expected,
-                tolerance,
-                kind,
-            } = self;
-            Err(format!(
-                "{run}: {table} {step} {key} {column}: found {found}, expected {kind} {expected} ({tolerance})"
-            ))
+    /// Looks at the runs of a case.
+    pub fn find(&self, case: &str, runs: &BTreeMap<String, Run>) -> Finding {
+        let found = if self.kind == "text" {
+            self.find_word(runs)
+        } else {
+            self.find_number(runs)
         };
-        if self.kind == "text" {
-            let found = self.words(run)?;
-            let wrong = found.iter().find(|word| *word != self.expected);
-            return wrong.map_or(Ok(()), |word| fail(word));
+        let (found, share, holds) = found.unwrap_or_else(|trouble| (trouble, None, false));
+        let at = |word: &str, value: &str| match value {
+            "" => String::new(),
+            "*" => " all".to_owned(),
+            value => format!(" {word}{value}"),
+        };
+        Finding {
+            case: case.to_owned(),
+            run: self.run.to_owned(),
+            quantity: format!(
+                "{}{}{} {}",
+                self.table,
+                at("step ", self.step),
+                at("", self.key),
+                self.column
+            ),
+            expected: self.expected.replace('=', "as run "),
+            found,
+            tolerance: match self.kind {
+                "abs" => format!("± {}", self.tolerance),
+                "rel" => format!("± {} of it", self.tolerance),
+                "most" => "at most".to_owned(),
+                "least" => "at least".to_owned(),
+                _ => String::new(),
+            },
+            share,
+            holds,
         }
-        let found = self.numbers(run)?;
+    }
+
+    fn find_word(
+        &self,
+        runs: &BTreeMap<String, Run>,
+    ) -> Result<(String, Option<f64>, bool), String> {
+        let words = self.words(run_called(self.run, runs)?)?;
+        let wrong = words.iter().find(|word| *word != self.expected);
+        let shown = wrong.or(words.first()).cloned().unwrap_or_default();
+        Ok((shown, None, wrong.is_none()))
+    }
+
+    fn find_number(
+        &self,
+        runs: &BTreeMap<String, Run>,
+    ) -> Result<(String, Option<f64>, bool), String> {
+        let found = self.numbers(run_called(self.run, runs)?)?;
         let expected = match self.expected.strip_prefix('=') {
-            Some(other) => self.numbers(&runs[other])?,
+            Some(other) => self.numbers(run_called(other, runs)?)?,
             None => vec![number(self.expected); found.len()],
         };
         if found.is_empty() || found.len() != expected.len() {
-            return fail(&"another number of rows");
+            return Err("another number of rows".to_owned());
         }
-        let mut pairs = found.iter().zip(expected);
-        let wrong = pairs.find(|(found, expected)| !self.holds(**found, *expected));
-        wrong.map_or(Ok(()), |(found, _)| fail(found))
+        let pairs = found.into_iter().zip(expected);
+        let pairs: Vec<Pair> = pairs
+            .map(|(found, expected)| Pair { found, expected })
+            .collect();
+        let excess = |pair: &Pair| self.excess(*pair);
+        // A value that is not a number is the worst of all.
+        let worst = pairs
+            .into_iter()
+            .max_by(|a, b| excess(a).total_cmp(&excess(b)))
+            .ok_or("no value")?;
+        let holds = excess(&worst) <= 0.0;
+        Ok((worst.found.to_string(), self.share(worst), holds))
     }
 
-    fn holds(&self, found: f64, expected: f64) -> bool {
-        let error = (found - expected).abs();
+    /// How much of the tolerance a value uses.
+    fn share(&self, Pair { found, expected }: Pair) -> Option<f64> {
+        let allowed = self.allowed(expected)?;
+        (allowed > 0.0).then(|| (found - expected).abs() / allowed)
+    }
+
+    fn allowed(&self, expected: f64) -> Option<f64> {
         match self.kind {
-            "abs" => error <= number(self.tolerance),
-            "rel" => error <= number(self.tolerance) * expected.abs(),
-            "most" => found <= expected,
-            "least" => found >= expected,
-            other => panic!("unknown kind {other}"),
+            "abs" => Some(number(self.tolerance)),
+            "rel" => Some(number(self.tolerance) * expected.abs()),
+            _ => None,
         }
     }
 
-    fn step(&self, run: &Run) -> usize {
+    /// By how much a value misses what it may be; not above zero where it holds.
+    fn excess(&self, Pair { found, expected }: Pair) -> f64 {
+        let excess = match (self.kind, self.allowed(expected)) {
+            (_, Some(allowed)) => (found - expected).abs() - allowed,
+            ("most", None) => found - expected,
+            ("least", None) => expected - found,
+            (other, None) => panic!("unknown kind {other}"),
+        };
+        if excess.is_nan() {
+            f64::INFINITY
+        } else {
+            excess
+        }
+    }
+
+    fn step(&self, run: &Run) -> Result<usize, String> {
         match self.step {
             "last" => run.last_step(),
-            "" | "all" => 0,
-            number => number.parse().expect("a load step in expected.csv"),
+            "" | "all" => Ok(0),
+            number => Ok(number.parse().expect("a load step in expected.csv")),
         }
     }
 
     fn numbers(&self, run: &Run) -> Result<Vec<f64>, String> {
         match self.table {
             "run" => Ok(vec![f64::from(run.status)]),
-            "identity" => Ok(vec![identities::value(
-                self.column,
-                run,
-                self.step(run),
-                self.key,
-            )]),
-            "packed" => Ok(vec![packed::value(self.column, &run.packed(), self.key)]),
+            "identity" => {
+                let step = self.step(run)?;
+                Ok(vec![identities::value(self.column, run, step, self.key)?])
+            }
+            "packed" => Ok(vec![packed::value(self.column, &run.packed()?, self.key)]),
             _ => {
                 let (table, rows) = self.rows(run)?;
                 let values = expression(&table, self.column)?;
@@ -128,15 +213,14 @@ impl<'a> Row<'a> {
 
     /// The table and the rows that are meant.
     fn rows(&self, run: &Run) -> Result<(Columns, Vec<usize>), String> {
-        let table = run.table(self.table, self.step(run));
-        let table = table.map_err(|error| error.to_string())?;
+        let table = run.table(self.table, self.step(run)?)?;
         let all = 0..table.len();
         let numbers = |column: &str| table.numbers(column).map_err(|e| e.to_string());
         let words = |column: &str| table.texts(column).map_err(|e| e.to_string());
         let rows: Vec<usize> = match self.table {
             "steps" if self.step == "all" => all.collect(),
             "steps" => {
-                let (steps, wanted) = (numbers("step")?, self.step(run) as f64);
+                let (steps, wanted) = (numbers("step")?, self.step(run)? as f64);
                 all.filter(|row| steps[*row] == wanted).collect()
             }
             _ if self.key == "*" => all.collect(),
@@ -166,6 +250,11 @@ impl<'a> Row<'a> {
         }
         Ok((table, rows))
     }
+}
+
+fn run_called<'a>(name: &str, runs: &'a BTreeMap<String, Run>) -> Result<&'a Run, String> {
+    runs.get(name)
+        .ok_or_else(|| format!("no run is called {name}"))
 }
 
 fn number(text: &str) -> f64 {

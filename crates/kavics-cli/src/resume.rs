@@ -1,0 +1,78 @@
+//! `kavics run --resume`: where a run that was broken off goes on.
+
+use std::path::Path;
+
+use kavics::loading::LoadPath;
+use kavics::measure::{Snapshot, grain_stress};
+use kavics::scene::Scene;
+use kavics_results::{
+    Checkpoint, Options, Results, ResultsError, ResultsFolder, RunState, check_room,
+    clear_unfinished,
+};
+
+use crate::failure::Failure;
+use crate::scene_file::say;
+
+/// Results to be written, and where the load path begins.
+pub struct Start<'a> {
+    /// The results.
+    pub results: Results<'a>,
+    /// The load path.
+    pub path: LoadPath<'a>,
+}
+
+/// Whether the results are finished; nothing is left to do then but the report.
+///
+/// # Errors
+/// Results that ended without an equilibrium; a record that cannot be read.
+pub fn is_finished(folder: &Path) -> Result<bool, Failure> {
+    let Ok(results) = ResultsFolder::open(folder) else {
+        return Ok(false);
+    };
+    let record = results.record()?;
+    match record.state {
+        RunState::Done => Ok(true),
+        RunState::NoEquilibrium => Err(Failure::Ended {
+            folder: folder.to_owned(),
+            why: record.failure.unwrap_or_default(),
+        }),
+        RunState::Running | RunState::Stopped => Ok(false),
+    }
+}
+
+/// Results from the beginning.
+pub fn begin<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<Start<'a>, Failure> {
+    Ok(Start {
+        results: Results::create(folder, scene, options)?,
+        path: scene.load_path(),
+    })
+}
+
+/// Results from their last checkpoint; from the beginning where there is none.
+pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<Start<'a>, Failure> {
+    let Some(checkpoint) = Checkpoint::newest(folder, scene)? else {
+        clear_unfinished(folder)?;
+        check_room(folder, false)?;
+        say(&format!(
+            "nothing to go on from in {}: the run begins with load step 1\n",
+            folder.display()
+        ));
+        return begin(scene, folder, options);
+    };
+    for note in &checkpoint.notes {
+        say(&format!("warning: {note}\n"));
+    }
+    let path = scene.load_path().resume(&checkpoint.memory);
+    let path = path.map_err(|source| ResultsError::Memory {
+        folder: folder.to_owned(),
+        source,
+    })?;
+    let mut results = Results::resume(folder, scene, options, &checkpoint)?;
+    if let Some(last) = path.last_equilibrium() {
+        let stress = grain_stress(&Snapshot::new(&scene.assembly, &last));
+        results.go_on_from(last, stress);
+    }
+    let step = checkpoint.header.step;
+    say(&format!("going on after load step {step}\n"));
+    Ok(Start { results, path })
+}

@@ -1,0 +1,220 @@
+//! Results that something is wrong with: each gives a sentence and an exit status, never a trace.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Three grains in a heap, the upper one pressed.
+const SCENE: &str = r#"
+[box]
+width = 4.0
+height = 4.0
+
+[grains.hexagonal]
+radius = 1.0
+rows = [2, 1]
+
+[contact.cement.cemented]
+stiffness.layer = { normal = 1.0, shear = 0.5 }
+
+[[support]]
+grains = { ids = [0, 1] }
+fix = ["x", "y"]
+
+[[load]]
+name = "press"
+grains = { ids = [2] }
+force = { y = -0.01 }
+
+[[stage]]
+factors = [1.0, 2.0]
+"#;
+
+/// The tasks that read results.
+const TASKS: [&str; 2] = ["measure", "report"];
+
+fn kavics(place: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_kavics"));
+    command.current_dir(place).args(arguments);
+    command.output().expect("the command runs")
+}
+
+fn finished(scene: &str) -> tempfile::TempDir {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    fs::write(place.path().join("heap.toml"), scene).expect("room");
+    let done = kavics(place.path(), &["run", "heap.toml", "-q"]);
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    place
+}
+
+/// Every task answers with `status` and a sentence that holds `words`.
+fn all_say(place: &Path, status: i32, words: &str) {
+    for task in TASKS {
+        let done = kavics(place, &[task, "heap.results"]);
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(status), "{task}: {said}");
+        assert!(said.contains(words), "{task}: {said}");
+        assert!(
+            !said.contains("panicked") && said.lines().count() <= 3,
+            "{task}: {said}"
+        );
+    }
+}
+
+fn change(place: &Path, file: &str, change: impl FnOnce(Vec<u8>) -> Vec<u8>) {
+    let path = place.join("heap.results").join(file);
+    let bytes = fs::read(&path).expect("a file of the results");
+    fs::write(&path, change(bytes)).expect("room");
+}
+
+#[test]
+fn there_is_nothing() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    all_say(place.path(), 4, "heap.results: No such file");
+}
+
+#[test]
+fn a_file_stands_in_place_of_the_folder() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    fs::write(place.path().join("heap.results"), "results").expect("room");
+    all_say(place.path(), 2, "heap.results is not a results folder");
+}
+
+#[test]
+fn a_newer_version_wrote_the_tables() {
+    let place = finished(SCENE);
+    change(place.path(), "run.json", |bytes| {
+        let text = String::from_utf8(bytes).expect("text");
+        text.replace("\"schema_version\": 1", "\"schema_version\": 2")
+            .into_bytes()
+    });
+    all_say(place.path(), 4, "tables of version 2");
+}
+
+#[test]
+fn the_record_is_no_json() {
+    let place = finished(SCENE);
+    change(place.path(), "run.json", |bytes| {
+        bytes[..bytes.len() / 2].to_vec()
+    });
+    all_say(place.path(), 4, "run.json");
+}
+
+#[test]
+fn half_of_the_folder_is_there() {
+    for table in [
+        "steps.parquet",
+        "contacts/000002.parquet",
+        "sides/000002.parquet",
+    ] {
+        let place = finished(SCENE);
+        fs::remove_file(place.path().join("heap.results").join(table)).expect("the table");
+        all_say(place.path(), 4, table);
+    }
+}
+
+#[test]
+fn the_grains_folder_is_gone() {
+    let place = finished(SCENE);
+    fs::remove_dir_all(place.path().join("heap.results/grains")).expect("the tables");
+    all_say(place.path(), 4, "grains");
+}
+
+#[test]
+fn a_table_is_cut_short() {
+    for table in [
+        "steps.parquet",
+        "grains/000002.parquet",
+        "contacts/000002.parquet",
+    ] {
+        let place = finished(SCENE);
+        change(place.path(), table, |bytes| {
+            bytes[..bytes.len() / 2].to_vec()
+        });
+        all_say(place.path(), 4, table);
+    }
+}
+
+/// Wherever a bit of a table has turned, the answer is a sentence or the numbers, never a trace.
+#[test]
+fn a_table_with_a_turned_bit_gives_no_trace() {
+    let place = finished(SCENE);
+    let path = place.path().join("heap.results/contacts/000002.parquet");
+    let whole = fs::read(&path).expect("the table");
+    for part in 0..24 {
+        let mut bytes = whole.clone();
+        let at = part * (whole.len() - 1) / 23;
+        bytes[at] ^= 0x10;
+        fs::write(&path, bytes).expect("room");
+        let done = kavics(place.path(), &["measure", "heap.results"]);
+        let status = done.status.code();
+        assert!(matches!(status, Some(0 | 2 | 4)), "byte {at}: {status:?}");
+        assert!(
+            !String::from_utf8_lossy(&done.stderr).contains("panicked"),
+            "byte {at}"
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_folder_may_not_be_read() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = finished(SCENE);
+    let table = place.path().join("heap.results/steps.parquet");
+    fs::set_permissions(&table, fs::Permissions::from_mode(0o000)).expect("permissions");
+    // Who may read everything has nothing to be told.
+    if fs::File::open(&table).is_err() {
+        all_say(place.path(), 4, "Permission denied");
+    }
+}
+
+#[test]
+fn the_scene_is_another() {
+    let place = finished(SCENE);
+    change(place.path(), "scene.toml", |bytes| {
+        let text = String::from_utf8(bytes).expect("text");
+        text.replace("rows = [2, 1]", "rows = [1]")
+            .replace("ids = [2]", "ids = [0]")
+            .into_bytes()
+    });
+    let done = kavics(place.path(), &["measure", "heap.results"]);
+    assert_eq!(
+        done.status.code(),
+        Some(2),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+}
+
+#[test]
+fn columns_that_are_not_recorded_are_named() {
+    let record = "[record]\ngrains = [\"ux\"]\ncontacts = []\n";
+    let place = finished(&format!("{SCENE}{record}"));
+    let measured = kavics(place.path(), &["measure", "heap.results"]);
+    let said = String::from_utf8_lossy(&measured.stderr);
+    assert_eq!(measured.status.code(), Some(4));
+    assert!(
+        said.contains("no column is called") && said.contains("[record]"),
+        "{said}"
+    );
+    let reported = kavics(place.path(), &["report", "heap.results"]);
+    assert!(reported.status.success());
+    let page = fs::read_to_string(place.path().join("heap.results/report.html")).expect("report");
+    assert!(page.contains("the scene does not record the column"));
+}
+
+/// What a table leaves out and does not change is read from the state before loading.
+#[test]
+fn pictures_need_no_column_that_does_not_change() {
+    let record = "[record]\ngrains = [\"ux\", \"uy\", \"rotation\", \"state\"]\n\
+                  contacts = [\"normal_force\", \"state\"]\n";
+    let place = finished(&format!("{SCENE}{record}"));
+    let page = fs::read_to_string(place.path().join("heap.results/report.html")).expect("report");
+    assert!(page.contains("contact graph at load step 2"));
+    assert!(!page.contains("does not record"), "a picture is missing");
+}

@@ -1,0 +1,189 @@
+//! Going on with results: writing a checkpoint of a run, and beginning from one.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use arrow_array::RecordBatch;
+use arrow_schema::ArrowError;
+use kavics::equilibrium::{Memory, MemoryColumn};
+use kavics::scene::Scene;
+
+use crate::ResultsError;
+use crate::actions::{Actions, action_columns};
+use crate::checkpoint::{self, CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, assembly_hash};
+use crate::column::Column;
+use crate::encode::{array, array_after, schema};
+use crate::events::event_columns;
+use crate::folder::Columns;
+use crate::log::Log;
+use crate::results::{Before, Options, Results, rows};
+use crate::room::clear_leftovers;
+use crate::steps::{iterate_columns, rows_with_stress, step_columns};
+use crate::warning::SolverWarnings;
+
+/// A checkpoint takes at most this share of the time.
+const SHARE: u32 = 20;
+
+/// What results remember beside their rows.
+const ACTION_FACTORS: &str = "results.action_factors";
+const WARNINGS: &str = "results.warnings";
+const WITHOUT_MODULI: &str = "results.without_moduli";
+
+impl<'a> Results<'a> {
+    /// Goes on with the results of a run that was broken off, from a checkpoint in the same folder.
+    ///
+    /// # Errors
+    /// A checkpoint whose tables have other columns; files that cannot be read, written or removed.
+    pub fn resume(
+        folder: &Path,
+        scene: &'a Scene,
+        options: Options,
+        checkpoint: &Checkpoint,
+    ) -> Result<Self, ResultsError> {
+        let mut results = Self::new(folder, scene, options);
+        clear_leftovers(folder, |step| results.is_recorded(step))?;
+        let before = |table, names: Vec<String>| earlier(folder, checkpoint, table, &names);
+        results.before = Before {
+            steps: before("steps", names(&step_columns()))?,
+            iterations: before("iterations", names(&iterate_columns()))?,
+            events: before("events", names(&event_columns()))?,
+            actions: before("actions", names(&action_columns()))?,
+        };
+        if let Some(steps) = &results.before.steps {
+            let table = Columns::of(&folder.join(checkpoint::CHECKPOINT), steps.clone());
+            results.steps = rows_with_stress(&table)?;
+        }
+        let damaged = || damaged(folder, "its tables are not whole");
+        results.actions = Actions::new(&scene.program)
+            .at(numbers(&checkpoint.memory, ACTION_FACTORS))
+            .ok_or_else(damaged)?;
+        results.solver_warnings = SolverWarnings::of_numbers(numbers(&checkpoint.memory, WARNINGS));
+        let without_moduli = numbers(&checkpoint.memory, WITHOUT_MODULI).iter();
+        results.without_moduli = without_moduli.map(|&step| step as usize).collect();
+        results.broken = checkpoint.header.broken;
+        let log = fs::read_to_string(folder.join("log.ndjson")).unwrap_or_default();
+        results.log = Log::resume(log, checkpoint.header.step);
+        results.make_folders()?;
+        results.write_growing()?;
+        Ok(results)
+    }
+
+    /// Whether it is time for a checkpoint: `apart` after the last one, and seldom enough to cost little.
+    pub fn wants_checkpoint(&self, apart: Duration) -> bool {
+        let least = apart.max(self.checkpoints.cost * SHARE);
+        self.checkpoints.written.elapsed() >= least
+    }
+
+    /// Writes a checkpoint: what the load path remembers, and all rows so far.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn checkpoint(&mut self, mut memory: Memory) -> Result<(), ResultsError> {
+        let start = Instant::now();
+        let factors = self.actions.factors().to_vec();
+        let mut keep = |name: &str, values| {
+            let column = MemoryColumn::Numbers(values);
+            memory.columns.insert(name.to_owned(), column);
+        };
+        keep(ACTION_FACTORS, factors);
+        keep(WARNINGS, self.solver_warnings.numbers());
+        let without_moduli = self.without_moduli.iter();
+        keep(
+            WITHOUT_MODULI,
+            without_moduli.map(|&step| step as f64).collect(),
+        );
+        let header = CheckpointHeader {
+            checkpoint_version: CHECKPOINT_VERSION,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            step: self.steps.last().map_or(0, |row| row.step),
+            broken: self.broken,
+            assembly: assembly_hash(self.scene),
+        };
+        let tables = self.tables();
+        let tables = tables.map_err(|error| damaged(&self.folder, &error.to_string()))?;
+        checkpoint::write(&self.folder, &header, memory, &tables)?;
+        self.checkpoints.written = Instant::now();
+        self.checkpoints.cost = start.elapsed();
+        Ok(())
+    }
+
+    fn tables(&self) -> Result<Vec<(&'static str, RecordBatch)>, ArrowError> {
+        let before = &self.before;
+        let steps = &self.steps[rows(before.steps.as_ref())..];
+        let mut tables = vec![
+            ("steps", all(&step_columns(), before.steps.as_ref(), steps)?),
+            (
+                "events",
+                all(&event_columns(), before.events.as_ref(), &self.events)?,
+            ),
+            (
+                "actions",
+                all(
+                    &action_columns(),
+                    before.actions.as_ref(),
+                    &self.action_rows,
+                )?,
+            ),
+        ];
+        if self.scene.settings.keep_iterates {
+            let columns = iterate_columns();
+            let table = all(&columns, before.iterations.as_ref(), &self.iterates)?;
+            tables.push(("iterations", table));
+        }
+        Ok(tables)
+    }
+}
+
+/// All rows of a table.
+fn all<R>(
+    columns: &[Column<R>],
+    before: Option<&RecordBatch>,
+    rows: &[R],
+) -> Result<RecordBatch, ArrowError> {
+    let columns_of = columns
+        .iter()
+        .enumerate()
+        .map(|(index, column)| match before {
+            Some(before) => array_after(column, before.column(index).as_ref(), rows),
+            None => array(column, rows),
+        });
+    RecordBatch::try_new(schema(columns), columns_of.collect())
+}
+
+fn names<R>(columns: &[Column<R>]) -> Vec<String> {
+    columns.iter().map(|column| column.name.clone()).collect()
+}
+
+/// The rows of a table in a checkpoint, if their columns are these.
+fn earlier(
+    folder: &Path,
+    checkpoint: &Checkpoint,
+    table: &str,
+    names: &[String],
+) -> Result<Option<RecordBatch>, ResultsError> {
+    let Some(rows) = checkpoint.tables.get(table) else {
+        return Ok(None);
+    };
+    let schema = rows.schema();
+    let found = schema.fields().iter().map(|field| field.name());
+    if !found.eq(names) {
+        let what = format!("the columns of {table} are not those of this version");
+        return Err(damaged(folder, &what));
+    }
+    Ok(Some(rows.clone()))
+}
+
+fn damaged(folder: &Path, reason: &str) -> ResultsError {
+    ResultsError::Damaged {
+        path: folder.join(checkpoint::CHECKPOINT),
+        reason: reason.to_owned(),
+    }
+}
+
+fn numbers<'m>(memory: &'m Memory, name: &str) -> &'m [f64] {
+    match memory.columns.get(name) {
+        Some(MemoryColumn::Numbers(values)) => values,
+        _ => &[],
+    }
+}
