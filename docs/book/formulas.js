@@ -1,9 +1,15 @@
-// Formulas of the book: ```math blocks, and code spans between two dollar signs, as MathML.
+// Formulas of the book: ```math blocks, and code spans between two dollar signs.
 "use strict";
+
+// As a page of the book and not one of its styles, so that it finds its fonts beside it. mdBook gives path_to_root.
+const style = document.createElement("link");
+style.rel = "stylesheet";
+style.href = `${path_to_root}book/katex.min.css`;
+document.head.append(style);
 
 function render(formula, displayMode) {
   const place = document.createElement(displayMode ? "div" : "span");
-  katex.render(formula, place, { output: "mathml", displayMode, throwOnError: false });
+  katex.render(formula, place, { displayMode, throwOnError: false });
   return place;
 }
 

@@ -160,7 +160,7 @@ export class Assembly {
   private async modes(state: State, picture: Picture): Promise<void> {
     if (!shows(state, "modes") || !state.run.has.modes.includes(state.step)) return;
     const table = await this.tables.at("modes", state.step, ["mode", "eigenvalue", "grain", "ux", "uy"], state.run);
-    const reach = 4 * meanRadius(picture.body);
+    const reach = 4 * radiiOf(picture.body).mean;
     const made = this.keep("modes", `${state.step} ${state.mode}`, () =>
       pieces.mode(this.gl, table, state.mode, picture.body, reach));
     picture.segments.modes = made.segments;
@@ -183,10 +183,11 @@ export class Assembly {
   }
 }
 
+/** Textures of what has been made; ends that several use are made apart and freed apart. */
 function texturesOf(value: unknown): WebGLTexture[] {
   if (value instanceof WebGLTexture) return [value];
-  if (value instanceof Ends) return value.textures;
   if (value === null || typeof value !== "object" || ArrayBuffer.isView(value) || Array.isArray(value)) return [];
+  if ("textures" in value) return value.textures as WebGLTexture[];
   return Object.values(value).flatMap((inner) => (inner instanceof Ends && inner.shared ? [] : texturesOf(inner)));
 }
 
@@ -197,14 +198,22 @@ export function shows(state: State, layer: Layer): boolean {
   return state.layers[layer] && offered(state.run, layer);
 }
 
-const radii = new WeakMap<object, number>();
+export interface Radii {
+  mean: number;
+  largest: number;
+}
 
-export function meanRadius({ radius }: pieces.Body): number {
-  let mean = radii.get(radius);
-  if (mean === undefined) {
-    let sum = 0;
-    for (let i = 0; i < radius.length; i++) sum += radius[i]!;
-    radii.set(radius, (mean = sum / Math.max(radius.length, 1)));
+const radii = new WeakMap<object, Radii>();
+
+export function radiiOf({ radius }: pieces.Body): Radii {
+  let known = radii.get(radius);
+  if (!known) {
+    let [sum, largest] = [0, 0];
+    for (let i = 0; i < radius.length; i++) {
+      sum += radius[i]!;
+      largest = Math.max(largest, radius[i]!);
+    }
+    radii.set(radius, (known = { mean: sum / Math.max(radius.length, 1), largest }));
   }
-  return mean;
+  return known;
 }

@@ -1,4 +1,4 @@
-import { meanRadius, SPOKES_UP_TO, type Drawn, type Picture } from "./assembly";
+import { radiiOf, SPOKES_UP_TO, type Drawn, type Picture } from "./assembly";
 import type { Camera } from "./camera";
 import { MAP_SIZE, pixels, type MapName, type Scale } from "./colour";
 import type { Gl, Uniform } from "./gl";
@@ -48,6 +48,7 @@ export class Painter {
         u_outside: state.layers.window ? 0.3 : 1, u_spokes: picture.count <= SPOKES_UP_TO,
       },
       map: this.map(picture.scales.grains, state.theme),
+      largest: radiiOf(picture.body).largest,
     });
   }
 
@@ -64,7 +65,7 @@ export class Painter {
   private containerOf({ edges }: Picture, factor: number): Segments {
     if (this.frame?.edges !== edges || this.frame.factor !== factor) {
       const { ends, styles } = this.frame?.segments ?? {};
-      for (const texture of [...(ends?.textures ?? []), styles?.texture ?? null]) this.gl.context.deleteTexture(texture);
+      for (const texture of [...(ends?.textures ?? []), ...(styles?.textures ?? [])]) this.gl.context.deleteTexture(texture);
       this.frame = { edges, factor, segments: container(this.gl, edges, factor) };
     }
     return this.frame.segments;
@@ -73,7 +74,7 @@ export class Painter {
   private drawLines(view: View, state: State, picture: Picture, palette: Palette): void {
     const signs = { u_below: unit(palette.compression), u_above: unit(palette.tension), u_plain: [0, 0, 0, 1] };
     const scales = picture.scales;
-    const radius = meanRadius(picture.body) * view.scale;
+    const radius = radiiOf(picture.body).mean * view.scale;
     const hair = view.density * Math.min(Math.max(0.08 * radius, 0.5), 2);
     const styles: [Drawn, number, Record<string, Uniform>, Scale?][] = [
       ["dual", hair, { u_plain: unit(palette.dual, 0.9) }],

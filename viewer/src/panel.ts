@@ -65,7 +65,8 @@ export class Panel {
     if (typeof value === "string") return value || "–";
     const partner = (name === "first" || name === "second") && value >= 0;
     if (partner) return element("button", { class: "link", click: () => this.store.set({ selection: { kind: "grain", id: value } }) }, `grain ${value}`);
-    return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(8)));
+    if (Number.isInteger(value)) return String(value);
+    return Math.abs(value) < 1e-3 ? value.toExponential(6) : String(Number(value.toPrecision(8)));
   }
 
   private async embeddedRow(table: string, step: number, id: number, run: Run): Promise<Row> {

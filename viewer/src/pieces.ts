@@ -1,6 +1,6 @@
 import { scaleOf, type Scale } from "./colour";
 import type { DataTexture, Gl } from "./gl";
-import { Ends, type Segments } from "./layers/segments";
+import { Ends, Styles, WIDEST, type Segments } from "./layers/segments";
 import { shaderValue } from "./layers/view";
 import { NONE } from "./run";
 import { carried, foot, type Edge, type Point } from "./sides";
@@ -123,15 +123,14 @@ export function forces(gl: Gl, ends: Ends, contacts: Table, colour: Column | nul
   const scale = scaleOf(colour ?? force, held);
   const reference = Math.max(largest(colour ? scaleOf(force, null).range : scale.range), least);
   let widest = 0;
-  const styles = gl.data(ends.count, 2, (rows) => {
-    for (let c = 0; c < ends.count; c++) {
-      const width = Math.min(Math.max(force.values[c]! / reference, -2), 2) || 0;
-      widest = Math.max(widest, Math.abs(width));
-      rows[2 * c] = width;
-      rows[2 * c + 1] = colour ? shaderValue(colour.values[c]) : 0;
-    }
-  });
-  return { segments: { ends, styles, widest }, scale };
+  const rows = new Float32Array(2 * ends.count);
+  for (let c = 0; c < ends.count; c++) {
+    const width = Math.min(Math.max(force.values[c]! / reference, -WIDEST), WIDEST) || 0;
+    widest = Math.max(widest, Math.abs(width));
+    rows[2 * c] = width;
+    rows[2 * c + 1] = colour ? shaderValue(colour.values[c]) : 0;
+  }
+  return { segments: { ends, styles: new Styles(gl, rows), widest }, scale };
 }
 
 function largest(range: Range): number {
@@ -142,10 +141,9 @@ function largest(range: Range): number {
 export function graph(gl: Gl, ends: Ends, contacts: Table): Segments {
   const state = contacts.get("state")!;
   const gone = new Set(["broken", "open"].map((word) => state.names?.indexOf(word) ?? -1));
-  const styles = gl.data(ends.count, 2, (rows) => {
-    for (let c = 0; c < ends.count; c++) rows[2 * c] = gone.has(state.values[c]!) ? 0 : 1;
-  });
-  return { ends, styles, widest: 1 };
+  const rows = new Float32Array(2 * ends.count);
+  for (let c = 0; c < ends.count; c++) rows[2 * c] = gone.has(state.values[c]!) ? 0 : 1;
+  return { ends, styles: new Styles(gl, rows), widest: 1 };
 }
 
 /** Lines with ends of their own, which move by the mean displacement of two grains. */
@@ -164,8 +162,8 @@ export function lines(gl: Gl, list: Line[], moves: Moves): Segments {
     const [x1, y1, x2, y2] = line.ends;
     rows.set([x1 + dx, y1 + dy, x2 + dx, y2 + dy], 4 * i);
   }));
-  const styles = gl.data(list.length, 2, (rows) => list.forEach(({ width, value }, i) => rows.set([width, value], 2 * i)));
-  return { ends, styles, widest: list.reduce((most, line) => Math.max(most, Math.abs(line.width)), 0) };
+  const rows = Float32Array.from(list.flatMap(({ width, value }) => [width, value]));
+  return { ends, styles: new Styles(gl, rows), widest: list.reduce((most, line) => Math.max(most, Math.abs(line.width)), 0) };
 }
 
 export function dual(gl: Gl, { first, second }: Links, table: Table, moves: Moves): Segments {
@@ -179,7 +177,7 @@ export function dual(gl: Gl, { first, second }: Links, table: Table, moves: Move
       columns.forEach((column, k) => (rows[4 * i + k] = column[i]! + (k % 2 === 0 ? dx : dy)));
     }
   });
-  return { ends, styles: gl.data(contact.length, 2, (rows) => rows.fill(1)), widest: 1 };
+  return { ends, styles: new Styles(gl, new Float32Array(2 * contact.length).fill(1)), widest: 1 };
 }
 
 /** A broken contact is a line across it, as long as its dual edge, coloured by when it broke. */

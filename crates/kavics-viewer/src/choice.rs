@@ -49,7 +49,8 @@ pub(crate) fn is_constant(table: StepTable, column: &str) -> bool {
 pub(crate) fn level(table: StepTable, column: &str) -> Option<Level> {
     Some(match (table, column) {
         (StepTable::Grains, "grain") | (StepTable::Contacts, "contact") => return None,
-        (StepTable::Grains, "x" | "y" | "radius" | "window" | "ux" | "uy") => Level::Grains,
+        (StepTable::Grains, "x" | "y" | "radius" | "window" | "ux" | "uy")
+        | (StepTable::Sides | StepTable::Cracks, _) => Level::Grains,
         (StepTable::Grains, "rotation" | "contacts" | "displacement" | "mean_stress" | "state") => {
             Level::Main
         }
@@ -57,7 +58,6 @@ pub(crate) fn level(table: StepTable, column: &str) -> Option<Level> {
             Level::Forces
         }
         (StepTable::Contacts, "nx" | "ny" | "shear_force" | "broke_at" | "property") => Level::Main,
-        (StepTable::Sides | StepTable::Cracks, _) => Level::Grains,
         _ => Level::All,
     })
 }

@@ -42,9 +42,9 @@ impl PageColumn {
     /// Its first rows as bytes.
     pub(crate) fn bytes_of(&self, rows: usize) -> Vec<u8> {
         match &self.values {
-            Values::Single(values) => bytes(values, rows, |value| value.to_le_bytes()),
-            Values::Double(values) => bytes(values, rows, |value| value.to_le_bytes()),
-            Values::Integers(values) => bytes(values, rows, |value| value.to_le_bytes()),
+            Values::Single(values) => bytes(values, rows, f32::to_le_bytes),
+            Values::Double(values) => bytes(values, rows, f64::to_le_bytes),
+            Values::Integers(values) => bytes(values, rows, i32::to_le_bytes),
             Values::Words(codes, _) => bytes(codes, rows, |code| [code as u8]),
         }
     }

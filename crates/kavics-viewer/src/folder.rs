@@ -235,13 +235,13 @@ impl PageFolder {
         } else {
             Vec::new()
         };
-        let column = |name: &String| match Made::named(table, name) {
-            Some(made) => made.column(&read, &breaks),
-            None => {
-                let known = self.known_words(table.name(), name)?;
-                column(&read, name, Precision::Single, &known)
-                    .ok_or_else(|| no_column(table.name(), name))
+        let column = |name: &String| {
+            if let Some(made) = Made::named(table, name) {
+                return made.column(&read, &breaks);
             }
+            let known = self.known_words(table.name(), name)?;
+            column(&read, name, Precision::Single, &known)
+                .ok_or_else(|| no_column(table.name(), name))
         };
         let columns: Result<Vec<PageColumn>, PageError> = wanted.iter().map(column).collect();
         Ok((columns?, read.len()))

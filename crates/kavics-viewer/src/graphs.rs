@@ -15,9 +15,12 @@ use crate::column::{PageColumn, Values};
 /// When a file was written, and how long it is.
 type Stamp = (Option<SystemTime>, u64);
 
+/// An assembly, and what its table of grains was like.
+type Stamped = (Stamp, Arc<Layout>);
+
 /// The undeformed assembly, kept as it is the same at all load steps.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct KeptLayout(Arc<Mutex<Option<(Stamp, Arc<Layout>)>>>);
+pub(crate) struct KeptLayout(Arc<Mutex<Option<Stamped>>>);
 
 impl KeptLayout {
     /// The assembly of the run in `folder`; `grains` is its table before loading, by which another run is told.

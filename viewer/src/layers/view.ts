@@ -33,16 +33,20 @@ vec4 place(vec2 point) {
 }
 `;
 
-/** Colour of a value; values that do not exist are 1e38 and more. */
+/** Tone, from 0 to 1, and colour of a value; −1 is the tone of none; values that do not exist are 1e38 and more. */
 export const COLOUR = `
 uniform sampler2D u_map;
 uniform vec2 u_range;
 uniform vec4 u_plain;
 uniform bool u_mapped;
+float tone(float value) {
+  return !u_mapped || value > 1e37 ? -1.0 : clamp((value - u_range.x) / (u_range.y - u_range.x), 0.0, 1.0);
+}
+vec3 colourOf(float tone) {
+  return tone < 0.0 ? u_plain.rgb : texelFetch(u_map, ivec2(int(tone * 255.0 + 0.5), 0), 0).rgb;
+}
 vec3 colour(float value) {
-  if (!u_mapped || value > 1e37) return u_plain.rgb;
-  float at = clamp((value - u_range.x) / (u_range.y - u_range.x), 0.0, 1.0);
-  return texelFetch(u_map, ivec2(int(at * 255.0 + 0.5), 0), 0).rgb;
+  return colourOf(tone(value));
 }
 `;
 
