@@ -46,7 +46,7 @@ fn blocks(page: &str) -> Vec<Block<'_>> {
 
 /// A command, whether Ctrl-C ends it, and what it says.
 struct Shown<'a> {
-    command: &'a str,
+    command: String,
     interrupted: bool,
     says: Vec<&'a str>,
 }
@@ -56,7 +56,7 @@ fn shown<'a>(block: &Block<'a>) -> Vec<Shown<'a>> {
     for &line in &block.lines {
         if let Some(command) = line.strip_prefix("$ ") {
             all.push(Shown {
-                command,
+                command: command.to_owned(),
                 interrupted: false,
                 says: Vec::new(),
             });
@@ -65,6 +65,7 @@ fn shown<'a>(block: &Block<'a>) -> Vec<Shown<'a>> {
         let last = all.last_mut().expect("a command before what it says");
         match line {
             "^C" => last.interrupted = true,
+            line if last.goes_on() => last.command.extend(["\n", line]),
             line => last.says.push(line),
         }
     }
@@ -72,6 +73,11 @@ fn shown<'a>(block: &Block<'a>) -> Vec<Shown<'a>> {
 }
 
 impl Shown<'_> {
+    /// Whether the next line belongs to the command.
+    fn goes_on(&self) -> bool {
+        self.command.ends_with('\\')
+    }
+
     fn status(&self) -> i32 {
         let fails = self.says.first().is_some_and(|s| s.starts_with("error:"));
         match (self.interrupted, self.command.starts_with("kavics run")) {
@@ -235,7 +241,7 @@ fn the_commands_of_the_readme_work() {
         let interrupted = command.starts_with("kavics view");
         let option = if interrupted { " --no-open" } else { "" };
         let shown = Shown {
-            command: &format!("{command}{option}"),
+            command: format!("{command}{option}"),
             interrupted,
             says: Vec::new(),
         };
