@@ -3,7 +3,7 @@
 //!
 //! A line `…` stands for any lines, `…` within a line for any text; `^C` for Ctrl-C. Commands of Python are passed over
 //! where there is no Python with pandas.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "view"))]
 
 use std::ffi::OsString;
 use std::fs;
