@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
+use kavics_pictures::{What, draw};
 use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
 use crate::ReportError;
 use crate::curves::{Figure, figure};
-use crate::fracture_picture;
 use crate::number::show;
-use crate::page::Table;
+use crate::page::{Table, request};
 use crate::plot::Series;
 
 /// Cracks listed.
@@ -132,9 +132,10 @@ pub(crate) fn fracture(folder: &ResultsFolder, events: &Columns) -> Result<Fract
         return Ok(Fracture::default());
     };
     let cracks = folder.cracks(step)?;
+    let damage = request(What::Damage);
     Ok(Fracture {
         step,
-        picture: fracture_picture::draw(folder, step, &breaks.contact)?,
+        picture: draw(folder, &damage)?.element(),
         note: breaks.note(),
         figures: breaks.figures(),
         crack_count: cracks.as_ref().map_or(0, Columns::len),
