@@ -39,6 +39,8 @@ fn every_task_has_a_help() {
         "run",
         "measure",
         "report",
+        "draw",
+        "export",
         "schema",
         "completions",
         "man",
