@@ -63,7 +63,8 @@ class Ovito(unittest.TestCase):
             folder = runs.exported(scene, "lammps")
             pipeline, frames = self.frames(folder / "grains.dump", scene)
             bonds = LoadTrajectoryModifier()
-            names = open(folder / "bonds.dump").readlines()[8].split()[2:]
+            head = (folder / "bonds.dump").read_text().splitlines()[8]
+            names = head.split()[2:]
             kept = ["normal_force", "contact"]
             columns = [name if name in kept else None for name in names]
             columns[:2] = ["Particle Identifiers.1", "Particle Identifiers.2"]
