@@ -105,6 +105,7 @@ fn picture(
             range: arguments.range,
             largest: arguments.largest,
             broken: arguments.broken,
+            legend: true,
             units,
         },
     )

@@ -50,5 +50,5 @@ class Tables(unittest.TestCase):
                 self.assertEqual(len(table), len(tables[0]))
                 for column in table.columns:
                     both = zip(table[column], tables[0][column])
-                    same = all(a == b or (pandas.isna(a) and pandas.isna(b)) for a, b in both)
+                    same = all(pandas.isna(b) if pandas.isna(a) else a == b for a, b in both)
                     self.assertTrue(same, f"{name}.{column}")
