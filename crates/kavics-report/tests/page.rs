@@ -304,6 +304,6 @@ fn a_large_assembly_stays_below_thirty_megabytes_and_says_what_is_left_out() {
     let page = page_of(place.path(), &block::scene(317, 316));
     assert!(page.len() < 30_000_000, "{}", page.len());
     assert!(page.contains("<h2>Viewer</h2>"));
-    assert!(page.contains("<code>kavics view</code> shows all."));
+    assert!(page.contains("<code>kavics view</code> shows all that is recorded."));
     assert!(!page.contains("class=\"line rim\""));
 }
