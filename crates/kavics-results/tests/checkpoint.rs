@@ -35,7 +35,9 @@ fn two(folder: &Path, scene: &Scene) -> [PathBuf; 2] {
         results
             .push(&equilibrium, &block::measures(step), &stress)
             .expect("room on the disk");
-        results.checkpoint(memory(vec![step as f64])).expect("room on the disk");
+        results
+            .checkpoint(memory(vec![step as f64]))
+            .expect("room on the disk");
     }
     let mut paths: Vec<PathBuf> = fs::read_dir(folder.join("checkpoint"))
         .expect("a folder")
@@ -55,7 +57,11 @@ fn damage_anywhere_is_seen_and_the_older_checkpoint_is_taken() {
     let (folder, scene) = (place.path().join("results"), block::scene(7, 5));
     let [_, newer] = two(&folder, &scene);
     let whole = fs::read(&newer).expect("a file");
-    let taken = || Checkpoint::newest(&folder, &scene).expect("a checkpoint").expect("one");
+    let taken = || {
+        Checkpoint::newest(&folder, &scene)
+            .expect("a checkpoint")
+            .expect("one")
+    };
     assert_eq!(numbers(&taken()), &MemoryColumn::Numbers(vec![2.0]));
     let stride = whole.len() / 200;
     for place in (0..whole.len()).step_by(stride.max(1)) {
@@ -64,7 +70,11 @@ fn damage_anywhere_is_seen_and_the_older_checkpoint_is_taken() {
         for bytes in [damaged.as_slice(), &whole[..place]] {
             fs::write(&newer, bytes).expect("room on the disk");
             let older = taken();
-            assert_eq!(numbers(&older), &MemoryColumn::Numbers(vec![1.0]), "byte {place}");
+            assert_eq!(
+                numbers(&older),
+                &MemoryColumn::Numbers(vec![1.0]),
+                "byte {place}"
+            );
             assert_eq!(older.notes.len(), 1);
         }
     }
@@ -77,7 +87,9 @@ fn where_both_are_damaged_both_are_named() {
     for path in two(&folder, &scene) {
         fs::write(path, "ARROW1").expect("room on the disk");
     }
-    let refused = Checkpoint::newest(&folder, &scene).expect_err("a refusal").to_string();
+    let refused = Checkpoint::newest(&folder, &scene)
+        .expect_err("a refusal")
+        .to_string();
     assert_eq!(refused.matches("damaged").count(), 2, "{refused}");
     assert!(refused.contains("no checkpoint is whole"), "{refused}");
 }
@@ -88,10 +100,18 @@ fn other_grains_under_the_same_words_are_refused() {
     let (folder, scene) = (place.path().join("results"), block::scene(7, 5));
     two(&folder, &scene);
     let mut moved = scene.clone();
-    let grain = moved.assembly.grains.values_mut().first_mut().expect("a grain");
+    let grain = moved
+        .assembly
+        .grains
+        .values_mut()
+        .first_mut()
+        .expect("a grain");
     grain.radius *= 1.0 + f64::EPSILON;
     let refused = Checkpoint::newest(&folder, &moved).expect_err("a refusal");
-    assert!(matches!(refused, ResultsError::OtherAssembly { .. }), "{refused}");
+    assert!(
+        matches!(refused, ResultsError::OtherAssembly { .. }),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -128,7 +148,9 @@ fn results_that_go_on_have_the_bytes_of_results_that_went_through() {
     let scene = block::scene(7, 5);
     block::write(&whole, &scene);
     two(&broken, &scene);
-    let checkpoint = Checkpoint::newest(&broken, &scene).expect("a checkpoint").expect("one");
+    let checkpoint = Checkpoint::newest(&broken, &scene)
+        .expect("a checkpoint")
+        .expect("one");
     let options = Options {
         threads: 1,
         ..Options::default()
@@ -139,9 +161,15 @@ fn results_that_go_on_have_the_bytes_of_results_that_went_through() {
     results.go_on_from(block::equilibrium(&scene, 2), stress.clone());
     for step in 3..block::FACTORS.len() {
         results
-            .push(&block::equilibrium(&scene, step), &block::measures(step), &stress)
+            .push(
+                &block::equilibrium(&scene, step),
+                &block::measures(step),
+                &stress,
+            )
             .expect("room on the disk");
     }
-    results.finish(kavics_results::RunState::Done, None).expect("room on the disk");
+    results
+        .finish(kavics_results::RunState::Done, None)
+        .expect("room on the disk");
     assert!(block::files(&broken) == block::files(&whole));
 }
