@@ -105,6 +105,17 @@ fn with_nothing_to_go_on_from_a_run_begins_at_the_beginning_and_says_so() {
 }
 
 #[test]
+fn a_run_that_ended_before_its_first_checkpoint_begins_again() {
+    let place = Place::with(SOFTENING);
+    let child = place.run_to("early", 1);
+    signal(&child, Signal::SIGKILL);
+    ended(child);
+    fs::remove_dir_all(place.folder("early/checkpoint")).expect("a folder");
+    let said = place.assert_ends_alike("early", &[]);
+    assert!(said.contains("nothing to go on from"), "{said}");
+}
+
+#[test]
 fn a_folder_of_something_else_is_left_alone() {
     let place = Place::with(SOFTENING);
     let other = place.folder("other");
