@@ -45,17 +45,15 @@ fn a_signal_stops_a_run_which_goes_on_to_the_same_end() {
 #[test]
 fn a_run_that_is_stopped_again_and_again_comes_to_the_same_end() {
     let place = Place::with(SLIDING);
-    let mut child = place.run_to("stopped", 1);
+    let first = place.run_to("stopped", 1);
+    signal(&first, Signal::SIGTERM);
+    assert_eq!(ended(first).code(), Some(75));
     for _ in 0..4 {
-        signal(&child, Signal::SIGTERM);
-        if ended(child).code() != Some(75) {
-            break;
-        }
-        child = place.spawn("stopped", &["--resume"]);
+        let child = place.spawn("stopped", &["--resume"]);
         sleep(place.whole.mul_f64(0.3));
+        signal(&child, Signal::SIGTERM);
+        ended(child);
     }
-    signal(&child, Signal::SIGTERM);
-    ended(child);
     place.assert_ends_alike("stopped", &[]);
 }
 
