@@ -24,6 +24,8 @@ const CURVE_WIDTH: f64 = 90.0;
 pub fn draw(arguments: &given::DrawArguments) -> Result<(), Failure> {
     let format = Format::of(&arguments.output)?;
     let folder = ResultsFolder::open(&arguments.results)?;
+    // Refuses tables of a later version.
+    folder.record()?;
     let sheet = Sheet::of(arguments, format);
     let picture = picture(&folder, arguments, sheet.width)?;
     let theme = match arguments.theme {
@@ -105,6 +107,7 @@ fn picture(
             range: arguments.range,
             largest: arguments.largest,
             broken: arguments.broken,
+            legend: true,
             units,
         },
     )

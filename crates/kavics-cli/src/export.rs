@@ -46,6 +46,8 @@ pub enum To {
 
 pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let results = ResultsFolder::open(&arguments.results)?;
+    // Refuses tables of a later version.
+    results.record()?;
     let (format, name) = match arguments.to {
         To::Vtp => (Format::Vtp, "vtp"),
         To::Extxyz => (Format::ExtendedXyz, "extxyz"),

@@ -32,7 +32,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
     scene.text = own_files::named(&scene.text, &scene.layers);
     let began = Instant::now();
-    terminal::say_more(&opening(&scene, threads));
+    if terminal::loudness() == terminal::Loudness::Verbose {
+        terminal::say_more(&opening(&scene, threads));
+    }
     let options = Options {
         threads,
         replace: arguments.force,

@@ -41,6 +41,8 @@ fn every_task_has_a_help() {
         "report",
         "view",
         "verify",
+        "draw",
+        "export",
         "schema",
         "completions",
         "man",

@@ -30,8 +30,16 @@ force = { y = -0.01 }
 factors = [1.0, 2.0]
 "#;
 
-/// The tasks that read results.
-const TASKS: [&str; 2] = ["measure", "report"];
+/// The tasks that read all of the results.
+const WHOLE: [&[&str]; 2] = [&["measure", "heap.results"], &["report", "heap.results"]];
+
+/// The tasks that read results, if only some.
+const EVERY: [&[&str]; 4] = [
+    &["measure", "heap.results"],
+    &["report", "heap.results"],
+    &["draw", "heap.results", "-o", "forces.svg"],
+    &["export", "heap.results", "--to", "vtp"],
+];
 
 fn kavics(place: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_kavics"));
@@ -51,16 +59,16 @@ fn finished(scene: &str) -> tempfile::TempDir {
     place
 }
 
-/// Every task answers with `status` and a sentence that holds `words`.
-fn all_say(place: &Path, status: i32, words: &str) {
-    for task in TASKS {
-        let done = kavics(place, &[task, "heap.results"]);
+/// The tasks answer with `status` and a sentence that holds `words`.
+fn all_say(tasks: &[&[&str]], place: &Path, status: i32, words: &str) {
+    for task in tasks {
+        let done = kavics(place, task);
         let said = String::from_utf8_lossy(&done.stderr).into_owned();
-        assert_eq!(done.status.code(), Some(status), "{task}: {said}");
-        assert!(said.contains(words), "{task}: {said}");
+        assert_eq!(done.status.code(), Some(status), "{task:?}: {said}");
+        assert!(said.contains(words), "{task:?}: {said}");
         assert!(
             !said.contains("panicked") && said.lines().count() <= 3,
-            "{task}: {said}"
+            "{task:?}: {said}"
         );
     }
 }
@@ -74,14 +82,19 @@ fn change(place: &Path, file: &str, change: impl FnOnce(Vec<u8>) -> Vec<u8>) {
 #[test]
 fn there_is_nothing() {
     let place = tempfile::tempdir().expect("a temporary folder");
-    all_say(place.path(), 4, "heap.results: No such file");
+    all_say(&EVERY, place.path(), 4, "heap.results: No such file");
 }
 
 #[test]
 fn a_file_stands_in_place_of_the_folder() {
     let place = tempfile::tempdir().expect("a temporary folder");
     fs::write(place.path().join("heap.results"), "results").expect("room");
-    all_say(place.path(), 2, "heap.results is not a results folder");
+    all_say(
+        &EVERY,
+        place.path(),
+        2,
+        "heap.results is not a results folder",
+    );
 }
 
 #[test]
@@ -92,7 +105,7 @@ fn a_newer_version_wrote_the_tables() {
         text.replace("\"schema_version\": 1", "\"schema_version\": 2")
             .into_bytes()
     });
-    all_say(place.path(), 4, "tables of version 2");
+    all_say(&EVERY, place.path(), 4, "tables of version 2");
 }
 
 #[test]
@@ -101,7 +114,7 @@ fn the_record_is_no_json() {
     change(place.path(), "run.json", |bytes| {
         bytes[..bytes.len() / 2].to_vec()
     });
-    all_say(place.path(), 4, "run.json");
+    all_say(&EVERY, place.path(), 4, "run.json");
 }
 
 #[test]
@@ -113,7 +126,7 @@ fn half_of_the_folder_is_there() {
     ] {
         let place = finished(SCENE);
         fs::remove_file(place.path().join("heap.results").join(table)).expect("the table");
-        all_say(place.path(), 4, table);
+        all_say(&WHOLE, place.path(), 4, table);
     }
 }
 
@@ -121,7 +134,7 @@ fn half_of_the_folder_is_there() {
 fn the_grains_folder_is_gone() {
     let place = finished(SCENE);
     fs::remove_dir_all(place.path().join("heap.results/grains")).expect("the tables");
-    all_say(place.path(), 4, "grains");
+    all_say(&WHOLE, place.path(), 4, "grains");
 }
 
 #[test]
@@ -135,7 +148,7 @@ fn a_table_is_cut_short() {
         change(place.path(), table, |bytes| {
             bytes[..bytes.len() / 2].to_vec()
         });
-        all_say(place.path(), 4, table);
+        all_say(&WHOLE, place.path(), 4, table);
     }
 }
 
@@ -169,7 +182,7 @@ fn the_folder_may_not_be_read() {
     fs::set_permissions(&table, fs::Permissions::from_mode(0o000)).expect("permissions");
     // Who may read everything has nothing to be told.
     if fs::File::open(&table).is_err() {
-        all_say(place.path(), 4, "Permission denied");
+        all_say(&WHOLE, place.path(), 4, "Permission denied");
     }
 }
 

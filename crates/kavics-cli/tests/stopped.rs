@@ -45,14 +45,14 @@ fn a_signal_stops_a_run_which_goes_on_to_the_same_end() {
 #[test]
 fn a_run_that_is_stopped_again_and_again_comes_to_the_same_end() {
     let place = Place::with(SLIDING);
-    let mut child = place.run_to("stopped", 1);
-    for round in 1.. {
-        signal(&child, Signal::SIGTERM);
-        if ended(child).code() != Some(75) || round == 5 {
-            break;
-        }
-        child = place.spawn("stopped", &["--resume"]);
+    let first = place.run_to("stopped", 1);
+    signal(&first, Signal::SIGTERM);
+    assert_eq!(ended(first).code(), Some(75));
+    for _ in 0..4 {
+        let child = place.spawn("stopped", &["--resume"]);
         sleep(place.whole.mul_f64(0.3));
+        signal(&child, Signal::SIGTERM);
+        ended(child);
     }
     place.assert_ends_alike("stopped", &[]);
 }
@@ -99,6 +99,17 @@ fn results_that_are_finished_stay_as_they_are() {
 fn with_nothing_to_go_on_from_a_run_begins_at_the_beginning_and_says_so() {
     let place = Place::with(SLIDING);
     let said = place.assert_ends_alike("new", &[]);
+    assert!(said.contains("nothing to go on from"), "{said}");
+}
+
+#[test]
+fn a_run_that_ended_before_its_first_checkpoint_begins_again() {
+    let place = Place::with(SOFTENING);
+    let child = place.run_to("early", 1);
+    signal(&child, Signal::SIGKILL);
+    ended(child);
+    fs::remove_dir_all(place.folder("early/checkpoint")).expect("a folder");
+    let said = place.assert_ends_alike("early", &[]);
     assert!(said.contains("nothing to go on from"), "{said}");
 }
 

@@ -71,9 +71,7 @@ struct Document {
 fn publish_document(path: &Path, document: &Document) -> Result<(), PictureError> {
     let parts = [
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
-        &document.field_data,
-        "</FieldData>\n<Piece ",
+         header_type=\"UInt64\">\n<PolyData>\n<Piece ",
         &document.counts,
         ">\n<PointData>\n",
         &document.point_data,
@@ -83,7 +81,10 @@ fn publish_document(path: &Path, document: &Document) -> Result<(), PictureError
         &document.points,
         "</Points>\n",
         &document.lines,
-        "</Piece>\n</PolyData>\n</VTKFile>\n",
+        // OVITO wants nothing before the piece.
+        "</Piece>\n<FieldData>\n",
+        &document.field_data,
+        "</FieldData>\n</PolyData>\n</VTKFile>\n",
     ];
     let write = |file: &mut (dyn Write + Send)| {
         let mut parts = parts.iter();
@@ -94,7 +95,9 @@ fn publish_document(path: &Path, document: &Document) -> Result<(), PictureError
 }
 
 fn grains(frame: &Frame<'_>, words: &Words) -> Result<Document, PictureError> {
-    let mut document = Document::of(frame, &frame.centres(), 0);
+    let centres = frame.centres();
+    let mut document = Document::of(frame, &centres, [centres.len(), 0]);
+    document.lines = cells("Verts", 1, 0..centres.len());
     document.point_data = columns(&frame.grains, words)?;
     let (ux, uy) = (frame.grains.numbers("ux")?, frame.grains.numbers("uy")?);
     let displacement = ux.into_iter().zip(uy).map(|(x, y)| Vector::new(x, y));
@@ -105,30 +108,33 @@ fn grains(frame: &Frame<'_>, words: &Words) -> Result<Document, PictureError> {
 
 fn contacts(frame: &Frame<'_>, words: &Words) -> Result<Document, PictureError> {
     let (points, lines) = frame.lines();
-    let mut document = Document::of(frame, &points, lines.len());
+    let mut document = Document::of(frame, &points, [0, lines.len()]);
     let grains = frame.grains.len();
     let ids = (0..points.len()).map(|point| if point < grains { point as i64 } else { -1 });
     document.point_data = whole("grain", ids);
     document.cell_data = columns(&frame.contacts, words)?;
-    let ends = lines.iter().flatten().map(|&point| point as i64);
-    let offsets = (1..=lines.len()).map(|line| 2 * line as i64);
-    document.lines = format!(
-        "<Lines>\n{}{}</Lines>\n",
-        whole("connectivity", ends),
-        whole("offsets", offsets)
-    );
+    document.lines = cells("Lines", 2, lines.into_iter().flatten());
     Ok(document)
 }
 
+/// Cells of so many points each.
+fn cells(kind: &str, each: usize, points: impl Iterator<Item = usize>) -> String {
+    let points: Vec<i64> = points.map(|point| point as i64).collect();
+    let offsets = (1..=points.len() / each).map(|cell| (each * cell) as i64);
+    let offsets = whole("offsets", offsets);
+    let points = whole("connectivity", points.into_iter());
+    format!("<{kind}>\n{points}{offsets}</{kind}>\n")
+}
+
 impl Document {
-    fn of(frame: &Frame<'_>, points: &[Vector], lines: usize) -> Self {
+    fn of(frame: &Frame<'_>, points: &[Vector], [verts, lines]: [usize; 2]) -> Self {
         let number = |name: &str, kind: &str, bytes: [u8; 8]| {
             let head = format!("{name}\" NumberOfTuples=\"1");
             array(kind, &head, 1, bytes.into_iter())
         };
         Self {
             counts: format!(
-                "NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{lines}\" \
+                "NumberOfPoints=\"{}\" NumberOfVerts=\"{verts}\" NumberOfLines=\"{lines}\" \
                  NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
                 points.len()
             ),

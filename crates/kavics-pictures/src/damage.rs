@@ -18,6 +18,9 @@ use crate::scenery::Scenery;
 const WIDTH: f64 = 0.24;
 const BOUNDS: [f64; 2] = [0.35, 1.4];
 
+/// Contacts that have not broken, about at most: no more can be told apart.
+const INTACT_DRAWN: usize = 200_000;
+
 /// What colours breaks: columns of the table `events`.
 const COLUMNS: [&str; 4] = ["event", "load_factor", "step", "mode"];
 
@@ -73,7 +76,11 @@ fn draw_intact(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) {
         .contacts()
         .filter(|(id, _)| !scenery.has_broken(*id));
     let line = |(_, contact)| Shape::Line(sheet.view.line(scenery.branch(contact)));
-    let lines = intact.map(line).collect();
+    let all = scenery.contacts().len();
+    let lines = intact
+        .step_by(all.div_ceil(INTACT_DRAWN).max(1))
+        .map(line)
+        .collect();
     let width = sheet.thickness(scenery.typical_length(), 0.05, [0.04, 0.3]);
     sheet.picture.stroke(lines, Ink::Idle, Pen::of(width));
     sheet.entries.push(Entry::Line(

@@ -49,6 +49,8 @@ pub struct Request {
     pub largest: Option<f64>,
     /// Whether broken contacts stand among the forces.
     pub broken: bool,
+    /// Whether the legend tells more than lengths.
+    pub legend: bool,
     /// Words for units.
     pub units: Units,
 }
@@ -65,6 +67,7 @@ impl Default for Request {
             range: None,
             largest: None,
             broken: false,
+            legend: true,
             units: Units::default(),
         }
     }
@@ -97,7 +100,15 @@ impl Sheet<'_> {
 pub fn draw(folder: &ResultsFolder, request: &Request) -> Result<Picture, PictureError> {
     let step = recorded_step(folder, request.step)?;
     let layout = Layout::read(folder)?;
-    let scenery = Scenery::at(folder, &layout, step, request.deformation)?;
+    draw_on(&layout, step, request)
+}
+
+/// Draws the assembly of a run whose layout is known, at a recorded load step.
+///
+/// # Errors
+/// Those of [`draw`].
+pub fn draw_on(layout: &Layout, step: usize, request: &Request) -> Result<Picture, PictureError> {
+    let scenery = Scenery::at(layout, step, request.deformation)?;
     draw_scenery(&scenery, request)
 }
 
@@ -127,7 +138,8 @@ fn draw_scenery(scenery: &Scenery<'_>, request: &Request) -> Result<Picture, Pic
         view,
         ..
     } = sheet;
-    finish(&mut picture, view.bottom, &entries);
+    let kept = if request.legend { entries.len() } else { 1 };
+    finish(&mut picture, view.bottom, &entries[..kept]);
     Ok(picture)
 }
 

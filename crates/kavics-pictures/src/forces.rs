@@ -40,6 +40,14 @@ pub fn no_force(folder: &ResultsFolder) -> Result<f64, PictureError> {
     Ok(ROUNDING * largest)
 }
 
+/// The largest normal force, by size, at a recorded load step, `[force]`.
+///
+/// # Errors
+/// A table that cannot be read.
+pub fn largest_force(folder: &ResultsFolder, step: usize) -> Result<f64, PictureError> {
+    Ok(largest_of(&forces(folder, step)?))
+}
+
 fn forces(folder: &ResultsFolder, step: usize) -> Result<Vec<f64>, PictureError> {
     let table = folder.some_of_contacts(step, &["normal_force"])?;
     Ok(table.numbers("normal_force")?)

@@ -33,7 +33,7 @@ pub struct Layout {
     pub assembly: Assembly,
     /// Edges between power cells by (first, second), those without a contact too.
     pub edges: Vec<DualEdge>,
-    folder: ResultsFolder,
+    pub(crate) folder: ResultsFolder,
 }
 
 impl Layout {

@@ -38,12 +38,8 @@ pub(crate) struct Scenery<'a> {
 
 impl<'a> Scenery<'a> {
     /// The assembly at a recorded load step, displacements so many times as large as they are.
-    pub fn at(
-        folder: &'a ResultsFolder,
-        layout: &'a Layout,
-        step: usize,
-        times: f64,
-    ) -> Result<Self, PictureError> {
+    pub fn at(layout: &'a Layout, step: usize, times: f64) -> Result<Self, PictureError> {
+        let folder = &layout.folder;
         let state = layout.state(step)?;
         let breaks = breaks(folder, step)?;
         let mut scenery = Self {

@@ -54,6 +54,13 @@ fn write_mark(svg: &mut String, mark: &Mark, theme: Theme) {
 }
 
 fn write_text(svg: &mut String, text: &Text, theme: Theme) -> std::fmt::Result {
+    let (place, colour) = (text_attributes(text), hexadecimal(text.ink, theme));
+    let words = escape(&text.words);
+    writeln!(svg, "<text{place} fill=\"{colour}\">{words}</text>")
+}
+
+/// Where words stand and how large they are.
+pub(crate) fn text_attributes(text: &Text) -> String {
     let anchor = match text.anchor {
         Anchor::Start => "",
         Anchor::Middle => " text-anchor=\"middle\"",
@@ -65,16 +72,11 @@ fn write_text(svg: &mut String, text: &Text, theme: Theme) -> std::fmt::Result {
     } else {
         String::new()
     };
-    writeln!(
-        svg,
-        "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{anchor}{turn} fill=\"{}\">{}</text>",
-        units(text.size),
-        hexadecimal(text.ink, theme),
-        escape(&text.words)
-    )
+    let size = units(text.size);
+    format!(" x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{anchor}{turn}")
 }
 
-fn attributes(pen: Pen) -> String {
+pub(crate) fn attributes(pen: Pen) -> String {
     let mut text = format!(" stroke-width=\"{}\"", short(pen.width * UNITS));
     if let Some([dash, gap]) = pen.dash {
         let _ = write!(text, " stroke-dasharray=\"{} {}\"", units(dash), units(gap));
@@ -86,7 +88,7 @@ fn attributes(pen: Pen) -> String {
 }
 
 /// Whole units.
-fn units(millimetres: f64) -> i32 {
+pub(crate) fn units(millimetres: f64) -> i32 {
     (millimetres * UNITS).round() as i32
 }
 
@@ -101,7 +103,7 @@ fn hexadecimal(ink: Ink, theme: Theme) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-fn outline(shapes: &[Shape]) -> String {
+pub(crate) fn outline(shapes: &[Shape]) -> String {
     let mut path = Outline::default();
     for shape in shapes {
         match shape {

@@ -2,15 +2,15 @@
 
 use std::collections::HashMap;
 
+use kavics_pictures::{What, draw};
 use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
 use crate::ReportError;
 use crate::curves::{Figure, figure};
-use crate::fracture_picture;
 use crate::left_out::or_note;
 use crate::number::show;
-use crate::page::Table;
+use crate::page::{Table, request};
 use crate::plot::Series;
 
 /// Cracks listed.
@@ -137,7 +137,9 @@ pub(crate) fn fracture(
         return Ok(Fracture::default());
     };
     let cracks = folder.cracks(step)?;
-    let picture = fracture_picture::draw(folder, step, &breaks.contact);
+    let damage = request(What::Damage);
+    let picture = draw(folder, &damage).map_err(ReportError::from);
+    let picture = picture.map(|picture| picture.element());
     Ok(Fracture {
         step,
         picture: or_note("picture of the breaks", picture, left_out)?,

@@ -6,7 +6,7 @@ use kavics_results::{Columns, ResultsFolder};
 use serde::Serialize;
 
 use crate::ReportError;
-use crate::graph::{Discs, Map, Path, stroke};
+use crate::discs::{Discs, Map, Path, stroke};
 use crate::number::{brief, show};
 
 /// Above this many grains neither ways nor spokes are drawn; above so many no picture.

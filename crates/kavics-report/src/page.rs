@@ -1,7 +1,6 @@
 //! All that stands on the page, ready for the template.
 
-use std::collections::HashSet;
-
+use kavics_pictures::{Layout, Request, What, draw_on, largest_force};
 use kavics_results::{Columns, ResultsFolder, RunRecord};
 use minijinja::Environment;
 use minijinja::value::Serde;
@@ -9,7 +8,6 @@ use serde::Serialize;
 
 use crate::curves::{Group, groups};
 use crate::fracture::{Fracture, fracture};
-use crate::graph;
 use crate::left_out::or_note;
 use crate::modes::{Modes, modes};
 use crate::moduli;
@@ -19,6 +17,9 @@ use crate::{Comparison, ReportError};
 /// Pictures of the contact graph, at most; and contacts in all of them together, so that the page stays small: none
 /// of an assembly with more.
 const PICTURES: usize = 6;
+
+/// Width of a sheet with a picture, mm: words on it are as large as those around it where it takes a third of the page.
+const PICTURE_WIDTH: f64 = 80.0;
 const CONTACTS_DRAWN: usize = 900_000;
 
 /// Above this many grains a picture takes half of the page.
@@ -103,7 +104,7 @@ pub(crate) fn page(folder: &ResultsFolder) -> Result<String, ReportError> {
     let steps = folder.steps()?;
     let events = folder.events()?;
     let mut left_out = Vec::new();
-    let pictures = pictures(folder, &record, &steps, &events);
+    let pictures = pictures(folder, &record, &steps);
     let (pictures, largest) = or_note("contact graph", pictures, &mut left_out)?;
     let comparison = Comparison::read(folder)?;
     let mut environment = Environment::new();
@@ -159,14 +160,21 @@ fn pictures(
     folder: &ResultsFolder,
     record: &RunRecord,
     steps: &Columns,
-    events: &Columns,
 ) -> Result<(Vec<Picture>, f64), ReportError> {
     let affordable = CONTACTS_DRAWN / record.contacts.max(1);
     let chosen = chosen_steps(folder, steps, affordable.min(PICTURES))?;
     let mut largest = 0.0_f64;
     for &step in &chosen {
-        largest = largest.max(graph::largest_force(folder, step)?);
+        largest = largest.max(largest_force(folder, step)?);
     }
+    if chosen.is_empty() {
+        return Ok((Vec::new(), largest));
+    }
+    let layout = Layout::read(folder)?;
+    let request = Request {
+        largest: Some(largest),
+        ..request(What::Forces)
+    };
     let numbers = steps.integers("step")?;
     let factors = steps.numbers("load_factor")?;
     let broken_so_far = steps.integers("broken")?;
@@ -175,12 +183,11 @@ fn pictures(
         let row = numbers
             .iter()
             .position(|number| *number == Some(step as i64));
-        let broken = broken_contacts(events, step)?;
         pictures.push(Picture {
             step,
             load_factor: row.map_or_else(|| "0".to_owned(), |row| show(factors[row])),
             broken: row.and_then(|row| broken_so_far[row]).unwrap_or(0),
-            svg: graph::draw(folder, step, &broken, largest)?,
+            svg: draw_on(&layout, step, &request)?.element(),
         });
     }
     Ok((pictures, largest))
@@ -219,13 +226,15 @@ fn chosen_steps(
     Ok(chosen)
 }
 
-/// The contacts of which a bond broke up to `step`.
-fn broken_contacts(events: &Columns, step: usize) -> Result<HashSet<i64>, ReportError> {
-    let (steps, kinds) = (events.integers("step")?, events.texts("kind")?);
-    let contacts = events.integers("contact")?;
-    let broke = |row: &usize| kinds[*row] == "broke" && steps[*row] <= Some(step as i64);
-    let rows = (0..events.len()).filter(broke);
-    Ok(rows.filter_map(|row| contacts[row]).collect())
+/// A picture on the page, which tells itself what lines mean.
+pub(crate) fn request(what: What) -> Request {
+    Request {
+        what,
+        width: PICTURE_WIDTH,
+        broken: true,
+        legend: what == What::Damage,
+        ..Request::default()
+    }
 }
 
 fn parts(steps: &Columns) -> Result<Vec<PartsRow>, ReportError> {

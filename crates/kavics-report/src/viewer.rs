@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use kavics_viewer::{Embedded, PageFolder, StepChoice, admitted, bundle, embed, script};
+use kavics_pictures::PictureError;
+use kavics_results::ResultsError;
+use kavics_viewer::{Embedded, PageError, PageFolder, StepChoice, admitted, bundle, embed, script};
 
 use crate::ReportError;
 use crate::plot::escape;
@@ -27,7 +29,15 @@ pub(crate) fn with_viewer(
     let script = script();
     let taken = page.len() + script.len() + bundle::STYLE.len() + ELEMENTS;
     let budget = MOST_BYTES.saturating_sub(taken);
-    let embedded = embed(&PageFolder::open(folder)?, steps, budget)?;
+    let embedded = match embed(&PageFolder::open(folder)?, steps, budget) {
+        Err(error) if lacks_a_column(&error) => Embedded {
+            left_out: vec![format!(
+                "The viewer is left out, as a column is not recorded: {error}."
+            )],
+            ..Embedded::default()
+        },
+        embedded => embedded?,
+    };
     let mut rest = page;
     let mut whole = String::with_capacity(taken + embedded.html.len());
     for (mark, part) in [
@@ -42,6 +52,16 @@ pub(crate) fn with_viewer(
     }
     whole.push_str(rest);
     Ok(whole)
+}
+
+/// Whether it is for the scene's choice of columns that something cannot be shown.
+fn lacks_a_column(error: &PageError) -> bool {
+    let results = match error {
+        PageError::NoColumn { .. } => return true,
+        PageError::Results(error) | PageError::Picture(PictureError::Results(error)) => error,
+        _ => return false,
+    };
+    matches!(results, ResultsError::NoColumn { .. })
 }
 
 /// No network, and no script but the viewer's.
@@ -59,7 +79,7 @@ fn place(embedded: &Embedded) -> String {
     let notes = match notes.as_slice() {
         [] => String::new(),
         notes => format!(
-            "<p class=\"soft\">{} <code>kavics view</code> shows all.</p>\n",
+            "<p class=\"soft\">{} <code>kavics view</code> shows all that is recorded.</p>\n",
             notes.join(" ")
         ),
     };

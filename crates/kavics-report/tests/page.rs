@@ -197,15 +197,15 @@ fn broken_bonds_stand_in_the_order_of_their_breaks() {
         "<p>3 bonds broke, the first at load factor 1.8, none above 1.8.</p>",
         "<figcaption>Load factor from break to break",
         "<figcaption>Energy taken and set free so far",
-        ">break 1</text>",
+        ">order of breaking</text>",
         "<small>chains of broken contacts</small>",
     ] {
         assert!(page.contains(part), "{part}");
     }
-    // Shades of the first, second and third of three breaks, beside those of the scale.
-    for shade in [0, 2, 5] {
-        let class = format!("class=\"break e{shade}\"");
-        assert_eq!(page.matches(&class).count(), 2, "{shade}");
+    // The first, second and third of three breaks, as lines; the shades of the legend are filled.
+    for step in [0, 4, 7] {
+        let class = format!("class=\"line order{step}\"");
+        assert_eq!(page.matches(&class).count(), 1, "{step}");
     }
 }
 
@@ -304,6 +304,6 @@ fn a_large_assembly_stays_below_thirty_megabytes_and_says_what_is_left_out() {
     let page = page_of(place.path(), &block::scene(317, 316));
     assert!(page.len() < 30_000_000, "{}", page.len());
     assert!(page.contains("<h2>Viewer</h2>"));
-    assert!(page.contains("<code>kavics view</code> shows all."));
-    assert!(!page.contains("class=\"grain\""));
+    assert!(page.contains("<code>kavics view</code> shows all that is recorded."));
+    assert!(!page.contains("class=\"line rim\""));
 }

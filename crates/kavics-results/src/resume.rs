@@ -69,10 +69,11 @@ impl<'a> Results<'a> {
         Ok(results)
     }
 
-    /// Whether it is time for a checkpoint: `apart` after the last one, and seldom enough to cost little.
+    /// Whether it is time for a checkpoint: `apart` after the last one, and seldom enough to cost little; with no time
+    /// apart it always is.
     pub fn wants_checkpoint(&self, apart: Duration) -> bool {
         let least = apart.max(self.checkpoints.cost * SHARE);
-        self.checkpoints.written.elapsed() >= least
+        apart.is_zero() || self.checkpoints.written.elapsed() >= least
     }
 
     /// Writes a checkpoint: what the load path remembers, and all rows so far.

@@ -94,7 +94,12 @@ pub fn clear_unfinished(folder: &Path) -> Result<(), ResultsError> {
         }
         other => other,
     };
-    remove(files_of_a_run(folder).map_err(not_results)?)
+    remove(files_of_a_run(folder).map_err(not_results)?)?;
+    for name in RECORDED.iter().chain(&ASKED_FOR).chain([&CHECKPOINT]) {
+        // What is not there need not go.
+        let _ = fs::remove_dir(folder.join(name));
+    }
+    Ok(())
 }
 
 /// Takes away the files of an earlier run, and nothing else; the folder itself stays.

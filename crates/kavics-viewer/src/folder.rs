@@ -43,6 +43,8 @@ impl PageFolder {
     /// A folder without `run.json`.
     pub fn open(path: &Path) -> Result<Self, PageError> {
         let results = ResultsFolder::open(path)?;
+        // Refuses tables of a later version.
+        results.record()?;
         let root = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         Ok(Self {
             results,

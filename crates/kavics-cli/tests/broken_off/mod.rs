@@ -41,10 +41,10 @@ every = 4
 /// Grains that break, slide and are loaded to and fro; each iterate is kept.
 pub const SLIDING: &str = r#"seed = 5
 [box]
-width = 24.0
+width = 12.0
 height = "fit"
 [grains.dropped]
-count = 240
+count = 80
 radius = { from = 0.5, to = 1.0 }
 [contact.mortar.cemented]
 stiffness.layer = { normal = 100.0, shear = 60.0 }
@@ -246,7 +246,7 @@ pub fn wait_for(path: &Path) {
     let start = Instant::now();
     while !path.exists() {
         assert!(
-            start.elapsed() < Duration::from_secs(60),
+            start.elapsed() < Duration::from_mins(1),
             "{}",
             path.display()
         );

@@ -41,11 +41,12 @@ impl Watch {
         }
     }
 
-    /// A load step begins.
+    /// A load step begins, or goes on.
     pub(crate) fn begin(&self, step: usize) {
-        self.step.store(step, Ordering::Relaxed);
-        self.iterations.store(0, Ordering::Relaxed);
-        self.broken.store(0, Ordering::Relaxed);
+        if self.step.swap(step, Ordering::Relaxed) != step {
+            self.iterations.store(0, Ordering::Relaxed);
+            self.broken.store(0, Ordering::Relaxed);
+        }
     }
 
     /// A balance of forces was looked at.

@@ -212,7 +212,8 @@ impl<'a> LoadPath<'a> {
 
     /// Goes through the next load step; false: to an event in it. None where no load step is left.
     fn go_on(&mut self) -> Option<bool> {
-        self.system.watch.begin(self.step + 1);
+        let step = self.step + usize::from(self.unfinished.is_none());
+        self.system.watch.begin(step);
         if self.breakage == Breakage::EventDriven {
             return self.take_events();
         }

@@ -1,0 +1,54 @@
+"""The tables open in pandas, polars and DuckDB, as docs/results.md shows."""
+
+import contextlib
+import io
+import os
+import re
+import unittest
+
+import duckdb
+import pandas
+import polars
+
+import runs
+
+SNIPPET = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
+
+
+class Tables(unittest.TestCase):
+    def test_every_snippet_of_the_page_runs_and_three_of_them_agree(self):
+        page = (runs.ROOT / "docs" / "results.md").read_text(encoding="utf-8")
+        for scene in ["block-32", "stability"]:
+            runs.results(scene)
+        before = os.getcwd()
+        os.chdir(runs.PLACE)
+        names, largest = {}, []
+        try:
+            for snippet in SNIPPET.findall(page):
+                printed = io.StringIO()
+                with contextlib.redirect_stdout(printed):
+                    exec(snippet, names)
+                self.assertTrue(printed.getvalue())
+                largest.append(names.get("largest"))
+        finally:
+            os.chdir(before)
+        by_pandas, by_polars = largest[0], largest[1].sort("step")
+        self.assertEqual(by_pandas.index.tolist(), by_polars["step"].to_list())
+        self.assertEqual(by_pandas.tolist(), by_polars["normal_force"].to_list())
+
+    def test_all_three_read_the_same(self):
+        folder = runs.results("dropped-1000")
+        for name in ["steps", "events", "actions"]:
+            path = str(folder / f"{name}.parquet")
+            tables = [
+                pandas.read_parquet(path),
+                polars.read_parquet(path).to_pandas(),
+                duckdb.sql(f"SELECT * FROM '{path}'").df(),
+            ]
+            for table in tables[1:]:
+                self.assertEqual(list(table.columns), list(tables[0].columns))
+                self.assertEqual(len(table), len(tables[0]))
+                for column in table.columns:
+                    both = zip(table[column], tables[0][column])
+                    same = all(pandas.isna(b) if pandas.isna(a) else a == b for a, b in both)
+                    self.assertTrue(same, f"{name}.{column}")
