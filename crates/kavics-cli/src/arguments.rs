@@ -117,6 +117,7 @@ pub struct PackArguments {
 }
 
 #[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools)] // Each is an option of its own.
 pub struct RunArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
@@ -133,7 +134,7 @@ pub struct RunArguments {
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Least time between two checkpoints in seconds; 0: after every load step
-    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds, overrides_with = "checkpoint")]
     pub checkpoint: Duration,
     /// One JSON object per load step on stdout
     #[arg(long)]

@@ -145,8 +145,11 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a positive number".to_owned())
 }
 
+/// How a number is a length.
+type ToLength = fn(f64) -> Length;
+
 fn length(text: &str) -> Result<Length, String> {
-    let units: [(&str, fn(f64) -> Length); 5] = [
+    let units: [(&str, ToLength); 5] = [
         ("mm", Length::Millimetres),
         ("cm", |value| Length::Millimetres(10.0 * value)),
         ("in", |value| Length::Millimetres(25.4 * value)),

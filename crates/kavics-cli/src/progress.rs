@@ -13,7 +13,7 @@ use crate::terminal::{self, Loudness};
 /// The line is drawn so often, whether a load step has ended or not.
 const BETWEEN: Duration = Duration::from_millis(100);
 /// Cells of the bar.
-const CELLS: usize = 8;
+const CELLS: usize = 7;
 /// No time left is guessed before this share of the run is done.
 const LEAST_SHARE: f64 = 0.005;
 

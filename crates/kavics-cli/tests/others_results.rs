@@ -228,6 +228,6 @@ fn pictures_need_no_column_that_does_not_change() {
                   contacts = [\"normal_force\", \"state\"]\n";
     let place = finished(&format!("{SCENE}{record}"));
     let page = fs::read_to_string(place.path().join("heap.results/report.html")).expect("report");
-    assert!(page.contains("contact graph at load step 2"));
+    assert!(page.contains("contact forces at load step 2"));
     assert!(!page.contains("does not record"), "a picture is missing");
 }

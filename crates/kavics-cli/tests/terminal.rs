@@ -153,7 +153,7 @@ fn an_event_driven_load_step_shows_that_it_moves() {
     let place = tempfile::tempdir().expect("a temporary folder");
     let bench = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/bench/fracture-10k.toml");
     let arguments = format!(
-        "run {} --set stage.0.factors=[0.05] -o out.results",
+        "run {} --set stage.0.factors=[0.6] -o out.results",
         bench.display()
     );
     let Some(shown) = on_a_terminal(place.path(), "", &arguments) else {

@@ -2,6 +2,7 @@
 //!
 //! After libAtoms' specification: `Lattice`, `Origin`, `pbc`, `Properties`, and what else the frame is known by.
 
+use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -53,7 +54,7 @@ fn write_frame(
     let mut header = format!("{}\n{}", table.len(), keys(frames.bounds(), frame));
     for (name, column) in others.iter().zip(&columns) {
         // `x` and `y` are the places before loading; `pos` has the displaced ones.
-        header += &format!(":{name}:{}:1", column.kind());
+        let _ = write!(header, ":{name}:{}:1", column.kind());
     }
     let mut lines = || -> io::Result<()> {
         writeln!(file, "{header}")?;

@@ -54,12 +54,11 @@ pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), P
             ..Pen::of(width)
         },
     );
-    match &colouring {
-        Some(colouring) => sheet.explain(colouring),
-        None => {
-            let entry = Entry::Line(Ink::Contact, Pen::of(0.4), "edge of a contact".to_owned());
-            sheet.entries.push(entry);
-        }
+    if let Some(colouring) = &colouring {
+        sheet.explain(colouring);
+    } else {
+        let entry = Entry::Line(Ink::Contact, Pen::of(0.4), "edge of a contact".to_owned());
+        sheet.entries.push(entry);
     }
     if has_others {
         let entry = Entry::Line(Ink::Idle, Pen::of(0.3), "edge without contact".to_owned());

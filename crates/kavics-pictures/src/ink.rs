@@ -2,6 +2,9 @@
 //!
 //! All pairs that stand beside each other can be told apart with any kind of colour vision.
 
+// Colours are written as everywhere: two digits each of red, green and blue.
+#![allow(clippy::unreadable_literal)]
+
 /// What a colour says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
@@ -100,7 +103,7 @@ impl Theme {
     pub(crate) fn colour(self, ink: Ink) -> Colour {
         let [light, dark] = match ink {
             Ink::Paper => [0xffffff, 0x14171a],
-            Ink::Text => [0x1b1f23, 0xe8eaec],
+            Ink::Text | Ink::Broken => [0x1b1f23, 0xe8eaec],
             Ink::Side => [0x5a636d, 0x9fa8b1],
             Ink::Grid => [0xd5d9dd, 0x343a40],
             Ink::Rim => [0xa3abb3, 0x626b74],
@@ -110,7 +113,6 @@ impl Theme {
             Ink::Contact => [0x2f3a45, 0xc4ccd4],
             Ink::Compression => [0x0b62a8, 0x58b0f0],
             Ink::Tension => [0xd5530b, 0xff9350],
-            Ink::Broken => [0x1b1f23, 0xe8eaec],
             Ink::Series(number) => SERIES[usize::from(number) % SERIES.len()],
             Ink::Shade(map, shade) => return self.shade(map, shade),
         };

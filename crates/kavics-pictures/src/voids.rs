@@ -13,8 +13,11 @@ use crate::ink::{ColourMap, Ink, SHADES};
 use crate::picture::{Pen, Shape};
 use crate::scenery::{Scenery, Standing};
 
+/// A number of a void cell.
+type Number = fn(&VoidCell) -> f64;
+
 /// What colours void cells: names of columns of the table `voids`, and their numbers.
-const COLUMNS: [(&str, fn(&VoidCell) -> f64); 6] = [
+const COLUMNS: [(&str, Number); 6] = [
     ("order", |cell| cell.order as f64),
     ("area", |cell| cell.area),
     ("void_area", |cell| cell.void_area),

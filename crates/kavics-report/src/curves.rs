@@ -222,8 +222,11 @@ fn driven_steps(actions: &Columns) -> Result<HashMap<Option<i64>, &str>, ReportE
     Ok(alone.map(|(step, names)| (step, names[0])).collect())
 }
 
-/// Load step, displacement and force of the breaks that tell them.
-fn breaks(events: &Columns) -> Result<Vec<(Option<i64>, (f64, f64))>, ReportError> {
+/// Load step of a break, and the displacement and force at which it came.
+type Reached = (Option<i64>, (f64, f64));
+
+/// The breaks that tell displacement and force.
+fn breaks(events: &Columns) -> Result<Vec<Reached>, ReportError> {
     if !events.names().contains(&"displacement") {
         return Ok(Vec::new());
     }

@@ -1,5 +1,6 @@
 //! What the page does without, as the scene leaves out columns that it needs.
 
+use kavics_pictures::PictureError;
 use kavics_results::ResultsError;
 
 use crate::ReportError;
@@ -18,6 +19,10 @@ pub(crate) fn or_note<T: Default>(
             notes.push(format!(
                 "{what}: left out, as the scene does not record the column {column}"
             ));
+            Ok(T::default())
+        }
+        Err(ReportError::Picture(PictureError::NoContainer { .. })) => {
+            notes.push(format!("{what}: left out, as run.json keeps no container"));
             Ok(T::default())
         }
         made => made,

@@ -87,7 +87,7 @@ fn tables_of_a_recorded_step_have_the_columns_of_the_contract() {
     );
     assert_eq!(
         names(results.events().unwrap()),
-        "event step iteration load_factor contact grain kind mode fracture_energy release_energy avalanche"
+        "event step iteration load_factor contact grain kind mode fracture_energy release_energy avalanche displacement force"
     );
 }
 

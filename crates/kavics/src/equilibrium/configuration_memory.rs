@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::bond::{Bond, geometry};
 use super::configuration::Configuration;
+use super::kinematics::FREEDOMS;
 use super::memory::{Memory, MemoryError, Value, code};
 use super::system::System;
 use super::{Displacement, Load};
@@ -57,7 +58,7 @@ impl Memory {
     pub(crate) fn put_triples(
         &mut self,
         name: &str,
-        values: &(impl Iterator<Item = [f64; 3]> + Clone),
+        values: &(impl Iterator<Item = [f64; FREEDOMS]> + Clone),
     ) {
         for (index, component) in ["x", "y", "rotation"].into_iter().enumerate() {
             let column = values.clone().map(|triple| triple[index]).collect();
@@ -66,7 +67,11 @@ impl Memory {
     }
 
     /// Reads a vector with three components a body.
-    pub(crate) fn triples(&self, name: &str, count: usize) -> Result<Vec<[f64; 3]>, MemoryError> {
+    pub(crate) fn triples(
+        &self,
+        name: &str,
+        count: usize,
+    ) -> Result<Vec<[f64; FREEDOMS]>, MemoryError> {
         let part = |component| self.column::<f64>(&format!("{name}_{component}"), count);
         let (x, y, rotation) = (part("x")?, part("y")?, part("rotation")?);
         Ok((0..count).map(|i| [x[i], y[i], rotation[i]]).collect())

@@ -56,6 +56,11 @@ const EVENT_NUMBERS: &str = "event.numbers";
 const EVENT_KINDS: &str = "event.kinds";
 const WARNINGS: &str = "way.warnings";
 
+/// Numbers an event and a warning are kept as.
+const EVENT_ID_COUNT: usize = 3;
+const EVENT_NUMBER_COUNT: usize = 5;
+const WARNING_NUMBER_COUNT: usize = 3;
+
 impl Way {
     /// Writes what has happened, iterates apart.
     pub fn write(&self, memory: &mut Memory) {
@@ -94,7 +99,7 @@ impl Way {
         let at = |place: usize| count(COUNTS, counts[place]);
         let [residual, scale, error, softened] = memory.fixed(NUMBERS)?;
         let warnings = memory.list::<f64>(WARNINGS)?.unwrap_or_default();
-        let warnings = warnings.as_chunks::<3>().0.iter();
+        let warnings = warnings.as_chunks::<WARNING_NUMBER_COUNT>().0.iter();
         Ok(Self {
             events: events(memory)?,
             warnings: warnings.filter_map(|w| Warning::of_numbers(*w)).collect(),
@@ -121,7 +126,7 @@ impl Way {
 }
 
 /// Iteration, contact or grain, avalanche.
-fn event_ids(event: &Event) -> [i64; 3] {
+fn event_ids(event: &Event) -> [i64; EVENT_ID_COUNT] {
     let id = match event.kind {
         EventKind::Broke { contact, .. }
         | EventKind::Opened(contact)
@@ -135,7 +140,7 @@ fn event_ids(event: &Event) -> [i64; 3] {
 }
 
 /// Load factor, energies, drive; the last not a number where there is none.
-fn event_numbers(event: &Event) -> [f64; 5] {
+fn event_numbers(event: &Event) -> [f64; EVENT_NUMBER_COUNT] {
     let [displacement, force] = event
         .drive
         .map_or([f64::NAN; 2], |drive| [drive.displacement, drive.force]);
@@ -166,15 +171,19 @@ fn event_kind(event: &Event) -> [u8; 2] {
 fn events(memory: &Memory) -> Result<Vec<Event>, MemoryError> {
     let kinds = memory.list::<u8>(EVENT_KINDS)?.unwrap_or_default();
     let (kinds, _) = kinds.as_chunks::<2>();
-    let ids = memory.column::<i64>(EVENT_IDS, 3 * kinds.len())?;
-    let numbers = memory.column::<f64>(EVENT_NUMBERS, 5 * kinds.len())?;
-    let rows = kinds.iter().zip(ids.as_chunks::<3>().0);
-    rows.zip(numbers.as_chunks::<5>().0)
+    let ids = memory.column::<i64>(EVENT_IDS, EVENT_ID_COUNT * kinds.len())?;
+    let numbers = memory.column::<f64>(EVENT_NUMBERS, EVENT_NUMBER_COUNT * kinds.len())?;
+    let rows = kinds.iter().zip(ids.as_chunks::<EVENT_ID_COUNT>().0);
+    rows.zip(numbers.as_chunks::<EVENT_NUMBER_COUNT>().0)
         .map(|((kind, ids), numbers)| event(*kind, *ids, *numbers))
         .collect()
 }
 
-fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 5]) -> Result<Event, MemoryError> {
+fn event(
+    kind: [u8; 2],
+    ids: [i64; EVENT_ID_COUNT],
+    numbers: [f64; EVENT_NUMBER_COUNT],
+) -> Result<Event, MemoryError> {
     let unfit = || MemoryError::unfit(EVENT_KINDS);
     let id = u32::try_from(ids[1]).map_err(|_| unfit())?;
     let (contact, grain) = (ContactId(id), GrainId(id));
@@ -213,7 +222,7 @@ fn event(kind: [u8; 2], ids: [i64; 3], numbers: [f64; 5]) -> Result<Event, Memor
 
 impl Warning {
     /// The warning as its kind and its sizes.
-    pub fn numbers(&self) -> [f64; 3] {
+    pub fn numbers(&self) -> [f64; WARNING_NUMBER_COUNT] {
         let of = |kind: f64, size: usize| [kind, size as f64, 0.0];
         match self {
             Self::RegularisedPivots { count } => of(0.0, *count),
@@ -235,7 +244,7 @@ impl Warning {
     }
 
     /// The warning of a kind and its sizes; none where no warning is of that kind.
-    pub fn of_numbers([kind, size, other]: [f64; 3]) -> Option<Self> {
+    pub fn of_numbers([kind, size, other]: [f64; WARNING_NUMBER_COUNT]) -> Option<Self> {
         let count = size as usize;
         Some(match kind as i64 {
             0 => Self::RegularisedPivots { count },
