@@ -128,16 +128,16 @@ stiffness.layer = { normal = 100.0, shear = 50.0 }
 friction = 0.4
 "#;
 
-const LOOSE: &str = r#"[contact.mortar.cohesionless]
+const LOOSE: &str = r"[contact.mortar.cohesionless]
 stiffness.layer = { normal = 100.0, shear = 50.0 }
 friction = 0.3
-"#;
+";
 
-const SOFTENING: &str = r#"[contact.mortar.cemented]
+const SOFTENING: &str = r"[contact.mortar.cemented]
 stiffness.layer = { normal = 100.0, shear = 60.0 }
 strength.stress = { tension = 0.05, shear = 0.1, bending = 0.1 }
 fracture_energy = 0.001
-"#;
+";
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4))]
