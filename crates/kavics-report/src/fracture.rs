@@ -91,8 +91,7 @@ impl Breaks {
             return String::new();
         };
         format!(
-            " {} between new maxima of the factor, the largest of {largest}. \
-             Load–displacement curves have a point a load step, and not the path between.",
+            " {} between new maxima of the factor, the largest of {largest}.",
             counted(sizes.len(), "avalanche")
         )
     }
@@ -235,7 +234,7 @@ mod tests {
         assert_eq!(
             breaks.note(),
             "3 bonds broke, the first at load factor 1, none above 2. 2 avalanches between new maxima of the factor, \
-             the largest of 2. Load–displacement curves have a point a load step, and not the path between."
+             the largest of 2."
         );
     }
 }
