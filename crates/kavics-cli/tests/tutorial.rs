@@ -65,3 +65,10 @@ fn left_out_lines_and_words_are_passed_over() {
     assert!(!lines_match(&["a", "d"], &["a", "b", "d"]));
     assert!(!lines_match(&["a"], &["a", "b"]));
 }
+
+#[test]
+fn small_residuals_stand_for_each_other() {
+    assert!(line_matches("1  2.9e-11  73", "1  3.1e-12  73"));
+    assert!(!line_matches("1  2.9e-11  73", "1  2.9e-11  72"));
+    assert!(!line_matches("1  2.9e-3  73", "1  3.1e-3  73"));
+}
