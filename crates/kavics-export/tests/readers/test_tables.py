@@ -1,4 +1,4 @@
-"""The tables open in pandas, polars and DuckDB, as docs/results.md shows."""
+"""The tables open in pandas, polars and DuckDB, as docs/results.md and docs/fracture.md show."""
 
 import contextlib
 import io
@@ -15,16 +15,22 @@ import runs
 SNIPPET = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
+def snippets(page):
+    text = (runs.ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    return SNIPPET.findall(text)
+
+
 class Tables(unittest.TestCase):
-    def test_every_snippet_of_the_page_runs_and_three_of_them_agree(self):
-        page = (runs.ROOT / "docs" / "results.md").read_text(encoding="utf-8")
-        for scene in ["block-32", "stability"]:
+    def test_every_snippet_of_the_pages_runs_and_two_of_them_agree(self):
+        runs.stopped("disordered-block", "large")
+        for scene in ["block-32", "stability", "fibre-bundle"]:
             runs.results(scene)
         before = os.getcwd()
         os.chdir(runs.PLACE)
-        names, largest = {}, []
+        largest = []
         try:
-            for snippet in SNIPPET.findall(page):
+            for snippet in snippets("results") + snippets("fracture"):
+                names = {}
                 printed = io.StringIO()
                 with contextlib.redirect_stdout(printed):
                     exec(snippet, names)
@@ -32,7 +38,8 @@ class Tables(unittest.TestCase):
                 largest.append(names.get("largest"))
         finally:
             os.chdir(before)
-        by_pandas, by_polars = largest[0], largest[1].sort("step")
+        by_pandas, by_polars = (table for table in largest if table is not None)
+        by_polars = by_polars.sort("step")
         self.assertEqual(by_pandas.index.tolist(), by_polars["step"].to_list())
         self.assertEqual(by_pandas.tolist(), by_polars["normal_force"].to_list())
 
