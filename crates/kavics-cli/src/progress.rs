@@ -108,7 +108,7 @@ fn line(plan: &Plan, glance: Glance, broken_before: usize, elapsed: Duration) ->
     let bar = "█".repeat(done) + &"░".repeat(CELLS - done);
     let steps = plan.ends.len();
     format!(
-        "step {}/{steps} {bar} factor {:.4} · residual {:.0e} · {} broken · {}",
+        "step {}/{steps} {bar} factor {:.4}, residual {:.0e}, {} broken, {}",
         glance.step,
         glance.load_factor,
         glance.residual,

@@ -21,23 +21,26 @@ pub struct Start<'a> {
     pub path: LoadPath<'a>,
 }
 
-/// Whether the results are finished; nothing is left to do then but the report.
+/// How the results ended, if they have: done, or without an equilibrium.
 ///
 /// # Errors
-/// Results that ended without an equilibrium; a record that cannot be read.
-pub fn is_finished(folder: &Path) -> Result<bool, Failure> {
+/// A record that cannot be read.
+pub fn ended(folder: &Path) -> Result<Option<Result<(), Failure>>, Failure> {
     let Ok(results) = ResultsFolder::open(folder) else {
-        return Ok(false);
+        return Ok(None);
     };
     let record = results.record()?;
-    match record.state {
-        RunState::Done => Ok(true),
-        RunState::NoEquilibrium => Err(Failure::Ended {
+    Ok(match record.state {
+        RunState::Done => {
+            say(&format!("{} is finished\n", folder.display()));
+            Some(Ok(()))
+        }
+        RunState::NoEquilibrium => Some(Err(Failure::Ended {
             folder: folder.to_owned(),
             why: record.failure.unwrap_or_default(),
-        }),
-        RunState::Running | RunState::Stopped => Ok(false),
-    }
+        })),
+        RunState::Running | RunState::Stopped => None,
+    })
 }
 
 /// Results from the beginning.

@@ -42,8 +42,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     Estimate::of(&scene).check(arguments.any_size)?;
     let start = if arguments.resume {
         check_same(&folder, &scene)?;
-        if resume::is_finished(&folder)? {
-            return finished(&folder);
+        if let Some(ended) = resume::ended(&folder)? {
+            finished(&folder)?;
+            return ended;
         }
         resume::go_on(&scene, &folder, options)?
     } else {
@@ -166,7 +167,6 @@ fn stop(results: Results<'_>, folder: &Path) -> Result<(), Failure> {
 
 /// Nothing is left to do but what a run that was broken off at its very end may have left out.
 fn finished(folder: &Path) -> Result<(), Failure> {
-    say(&format!("{} is finished\n", folder.display()));
     clear_checkpoints(folder)?;
     if folder.join("report.html").is_file() {
         return Ok(());

@@ -161,7 +161,7 @@ fn an_event_driven_load_step_shows_that_it_moves() {
     };
     let progress = shown.split('\r').filter(|line| line.contains("step 1/1"));
     let counts: std::collections::BTreeSet<&str> = progress
-        .filter_map(|line| line.split(" · ").find(|part| part.ends_with("broken")))
+        .filter_map(|line| line.split(", ").find(|part| part.ends_with("broken")))
         .collect();
     assert!(counts.len() > 1, "{counts:?}");
     assert!(widest(&shown) <= 80);

@@ -10,7 +10,7 @@ use crate::picture::{Pen, Shape};
 use crate::scenery::Scenery;
 
 /// Grains of a smaller mean radius on the sheet have no outline, mm.
-const SMALLEST_OUTLINED: f64 = 0.3;
+const SMALLEST_OUTLINED: f64 = 0.25;
 
 /// Grains of a smaller mean radius on the sheet are not drawn at all, unless a column colours them, mm.
 const SMALLEST_DRAWN: f64 = 0.06;

@@ -305,5 +305,10 @@ fn a_large_assembly_stays_below_thirty_megabytes_and_says_what_is_left_out() {
     assert!(page.len() < 30_000_000, "{}", page.len());
     assert!(page.contains("<h2>Viewer</h2>"));
     assert!(page.contains("<code>kavics view</code> shows all that is recorded."));
-    assert!(!page.contains("class=\"line rim\""));
+    // Outlines of grains would be long; that of a grain in the legend is short.
+    let rims = page.split("class=\"line rim\"").skip(1);
+    assert!(
+        rims.map(|rim| rim.find('>').unwrap_or(0))
+            .all(|length| length < 200)
+    );
 }

@@ -1,7 +1,9 @@
 //! The server: an address, and an answer to each request.
 
+use std::io;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::Path;
+use std::pin::pin;
 use std::sync::Arc;
 
 use axum::Router;
@@ -55,11 +57,11 @@ impl Server {
         format!("http://127.0.0.1:{}/", self.port)
     }
 
-    /// Answers requests until Ctrl-C.
+    /// Answers requests until Ctrl-C, which is waited for before `ready` is called.
     ///
     /// # Errors
-    /// A server that cannot start.
-    pub fn run(self) -> Result<(), ServerError> {
+    /// A server that cannot start; `ready` that fails.
+    pub fn run(self, ready: impl FnOnce() -> io::Result<()>) -> Result<(), ServerError> {
         let place = Arc::new(Place {
             folder: self.folder,
             port: self.port,
@@ -69,9 +71,15 @@ impl Server {
         let served = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(listener)?;
             let routes = Router::new().fallback(respond).with_state(place);
+            let mut stop = pin!(ctrl_c());
+            tokio::select! {
+                biased;
+                stopped = &mut stop => return stopped,
+                ready = async { ready() } => ready?,
+            }
             tokio::select! {
                 served = axum::serve(listener, routes) => served,
-                stopped = ctrl_c() => stopped,
+                stopped = stop => stopped,
             }
         });
         // A browser keeps its connections open; nobody waits for them, nor for a table that is being read.

@@ -34,7 +34,7 @@ impl Served {
         let address = server.address();
         let port = address.trim_end_matches('/').rsplit(':').next();
         let port = port.and_then(|port| port.parse().ok()).expect("a port");
-        thread::spawn(|| server.run());
+        thread::spawn(|| server.run(|| Ok(())));
         Self { port, place }
     }
 

@@ -4,6 +4,8 @@ use super::work::{Sample, Work};
 
 /// A part is halved at most so often.
 const MOST_HALVINGS: usize = 12;
+/// An error is little beside another at this share of it.
+const LITTLE: f64 = 0.1;
 
 /// A part of the way: whole, or in two halves.
 struct Part {
@@ -48,14 +50,18 @@ impl Refinement {
     /// The undivided part that has the largest share of the error, of those that may still be divided.
     ///
     /// What is left of the error of a part is left of that of its halves, each in its measure: where extrapolation does
-    /// well, dividing the halves gains nothing.
-    pub fn worst(&self) -> Option<usize> {
+    /// well, dividing the halves gains nothing. None where parts that may not be divided leave more than `allowed`, and
+    /// the others little beside that: the way is not continuous there.
+    pub fn worst(&self, allowed: f64) -> Option<usize> {
         let mut shares = vec![self.error(); self.parts.len()];
         let mut worst: Option<usize> = None;
+        let mut fixed = 0.0;
         for (place, part) in self.parts.iter().enumerate() {
             let Some(halves) = part.halves else {
                 let is_worse = worst.is_none_or(|other| shares[place] > shares[other]);
-                if part.halvings < MOST_HALVINGS && is_worse {
+                if part.halvings >= MOST_HALVINGS {
+                    fixed += shares[place];
+                } else if is_worse {
                     worst = Some(place);
                 }
                 continue;
@@ -66,7 +72,7 @@ impl Refinement {
                     shares[place] * error / (errors[0] + errors[1]).max(f64::MIN_POSITIVE);
             }
         }
-        worst
+        worst.filter(|&place| fixed <= allowed || shares[place] > LITTLE * fixed)
     }
 
     /// Leaves a part as it is.
@@ -232,19 +238,25 @@ mod tests {
     #[test]
     fn the_part_with_the_largest_error_is_divided_until_it_is_too_small() {
         let mut refinement = whole();
-        assert_eq!(refinement.worst(), Some(0));
+        assert_eq!(refinement.worst(0.0), Some(0));
         divide(&mut refinement, 0);
         // The trapezoid is off by 0.0151 in the first half and by 0.0072 in the second.
-        assert_eq!(refinement.worst(), Some(1));
+        assert_eq!(refinement.worst(0.0), Some(1));
         let mut part = 1;
         for _ in 1..MOST_HALVINGS {
             divide(&mut refinement, part);
             part = refinement.parts.len() - 1;
         }
         // The other parts are still there to be divided.
-        refinement.parts[part].error = 1e3;
-        let other = refinement.worst().expect("a part");
+        let other = refinement.worst(1.0).expect("a part");
         assert_ne!(other, part);
         assert!(refinement.parts[other].halves.is_none());
+        // Beside a jump they are not worth it.
+        let mut above = Some(part);
+        while let Some(part) = above {
+            refinement.parts[part].error += 10.0;
+            above = refinement.parts[part].within;
+        }
+        assert_eq!(refinement.worst(1.0), None);
     }
 }

@@ -150,7 +150,7 @@ pub fn along(system: &mut System<'_>, stretch: &Stretch<'_>, account: &mut Accou
     let mut refinement = Refinement::new(ends.into(), first);
     let mut tries = 0;
     while refinement.error() > allowed && tries < MOST_EQUILIBRIA {
-        let Some(part) = refinement.worst() else {
+        let Some(part) = refinement.worst(allowed) else {
             break;
         };
         let [from, to] = refinement.shares(part);
