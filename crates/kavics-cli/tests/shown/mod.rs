@@ -182,11 +182,14 @@ impl<'a> Shown<'a> {
     /// Stderr and stdout go into one file.
     fn start(&self, place: &Path, said: &Path) -> Child {
         let file = fs::File::create(said).expect("a file");
-        Command::new("sh")
+        let mut shell = Command::new("sh");
+        if self.command.contains('~') {
+            shell.env("HOME", place);
+        }
+        shell
             .args(["-c", &format!("exec {}", self.in_test())])
             .current_dir(place)
             .env("PATH", path_with_kavics())
-            .env("HOME", place)
             .stdin(Stdio::null())
             .stderr(file.try_clone().expect("the same file"))
             .stdout(file)
