@@ -71,11 +71,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     for lone in lone.unwrap_or_default() {
         results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
     }
-    let warnings = results.warnings();
-    let steps = results.finish(state, failure.as_ref().map(ToString::to_string))?;
-    say(&summary::summary(&steps));
-    say(&summary::closing(&scene, &steps, state, began.elapsed()));
-    scene_file::show_warnings(&warnings);
+    let why = failure.as_ref().map(ToString::to_string);
+    let steps = conclude(&scene, results, state, why, began)?;
     finish_report(&folder)?;
     match failure {
         None => lines.end(),
@@ -85,6 +82,22 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             folder,
         }),
     }
+}
+
+/// Writes what has not been written, and sums the run up.
+fn conclude(
+    scene: &Scene,
+    results: Results<'_>,
+    state: RunState,
+    failure: Option<String>,
+    began: Instant,
+) -> Result<Vec<StepRow>, Failure> {
+    let warnings = results.warnings();
+    let steps = results.finish(state, failure)?;
+    say(&summary::summary(&steps));
+    say(&summary::closing(scene, &steps, state, began.elapsed()));
+    scene_file::show_warnings(&warnings);
+    Ok(steps)
 }
 
 /// What is about to be solved, and how.

@@ -112,18 +112,7 @@ impl Forces {
 /// Draws the forces, small ones first.
 pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), PictureError> {
     let forces = Forces::read(sheet, scenery)?;
-    let colouring = match &sheet.request.colour {
-        Some(column) => {
-            let table = scenery.folder.contacts(scenery.step)?;
-            Some(Colouring::by(
-                &table,
-                "contacts",
-                column,
-                sheet.request.range,
-            )?)
-        }
-        None => None,
-    };
+    let colouring = colouring(sheet, scenery)?;
     let mut classes: Vec<Groups> = (0..WIDTHS).map(|_| Groups::default()).collect();
     let mut idle = Vec::new();
     let mut any = [false; 2];
@@ -171,6 +160,15 @@ pub(crate) fn draw(sheet: &mut Sheet<'_>, scenery: &Scenery<'_>) -> Result<(), P
         draw_broken(sheet, scenery, lines);
     }
     Ok(())
+}
+
+/// Colours by a column of `contacts`, where one is wanted.
+fn colouring(sheet: &Sheet<'_>, scenery: &Scenery<'_>) -> Result<Option<Colouring>, PictureError> {
+    let Some(column) = &sheet.request.colour else {
+        return Ok(None);
+    };
+    let table = scenery.folder.contacts(scenery.step)?;
+    Colouring::by(&table, "contacts", column, sheet.request.range).map(Some)
 }
 
 fn explain_signs(sheet: &mut Sheet<'_>, [pressed, pulled]: [bool; 2]) {

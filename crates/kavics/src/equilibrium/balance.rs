@@ -69,11 +69,9 @@ impl System<'_> {
             }
             if falls > SLOW {
                 self.factored = None;
-                iteration = if history.len() > 2 {
-                    Iteration::Tangent
-                } else {
-                    iteration
-                };
+                if history.len() > 2 {
+                    iteration = Iteration::Tangent;
+                }
             }
             let solved = self.solve(
                 configuration,
