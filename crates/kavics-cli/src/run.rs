@@ -60,8 +60,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         apart: arguments.checkpoint,
     };
     let path = start.path.stopped_by(signals::stop_flag()?);
-    let ended = follower.follow(path)?;
-    let lines = follower.lines;
+    let (ended, lines) = (follower.follow(path)?, follower.lines);
     let (state, failure) = match ended {
         Ended::Stopped => return stop(results, &folder),
         Ended::Done => (RunState::Done, None),
