@@ -114,6 +114,9 @@ pub struct PackArguments {
     /// Say how many grains were placed and how densely, instead of listing them
     #[arg(long)]
     pub summary: bool,
+    /// Do not refuse what this machine seems to have no memory for
+    #[arg(long)]
+    pub any_size: bool,
 }
 
 #[derive(Debug, Args)]
@@ -151,7 +154,7 @@ pub struct MeasureArguments {
     /// Window, as in the scene: all, undisturbed, "{ x = [0, 5], y = [0, 5] }" or "{ ids = [3, 4] }"
     #[arg(long)]
     pub window: Option<String>,
-    /// Write the table of load steps to this file (csv, parquet, extended XYZ or a LAMMPS dump, by the ending); without it csv to stdout
+    /// Write the table of load steps to this file (csv or parquet, by the ending); without it csv to stdout
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }

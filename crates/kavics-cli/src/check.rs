@@ -10,7 +10,7 @@ use crate::limits::{Estimate, bytes};
 use crate::scene_file;
 
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    let (scene, _) = scene_file::read(&arguments.scene)?;
+    let (scene, _) = scene_file::read(&arguments.scene, arguments.any_size)?;
     let counts = Counts::of(&scene);
     let mut out = stdout().lock();
     if arguments.json {

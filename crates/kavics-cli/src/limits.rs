@@ -14,6 +14,8 @@ const PROGRAM: f64 = 18e6;
 /// largest resident size of whole runs (docs/benchmarks.md).
 const DIRECT: [f64; 2] = [2300.0, 750.0];
 const ITERATIVE: [f64; 2] = [2000.0, 900.0];
+/// Bytes a grain to place it, and to find its contacts.
+const PLACING: [f64; 2] = [100.0, 450.0];
 /// Values of the factor for each unknown and each doubling of their number, with three contacts a grain, and the power
 /// in which they fall with fewer.
 const FILL: f64 = 8.4;
@@ -67,15 +69,32 @@ impl Estimate {
     /// # Errors
     /// Memory that is not there.
     pub fn check(self, any_size: bool) -> Result<(), Failure> {
-        match available() {
-            Some(available) if !any_size && self.memory > DOUBT * available => {
-                Err(Failure::TooLarge {
-                    needed: bytes(self.memory),
-                    available: bytes(available),
-                })
-            }
-            _ => Ok(()),
-        }
+        check_memory(self.memory, any_size)
+    }
+}
+
+/// Refuses to place grains that this machine has no memory for, before any is placed.
+///
+/// # Errors
+/// Memory that is not there.
+pub fn check_placing(text: &str, with_contacts: bool, any_size: bool) -> Result<(), Failure> {
+    let [grain, contact] = PLACING;
+    let bytes = if with_contacts {
+        grain + contact
+    } else {
+        grain
+    };
+    let grains = Scene::planned_grains(text).unwrap_or_default();
+    check_memory(PROGRAM + bytes * grains, any_size)
+}
+
+fn check_memory(needed: f64, any_size: bool) -> Result<(), Failure> {
+    match available() {
+        Some(available) if !any_size && needed > DOUBT * available => Err(Failure::TooLarge {
+            needed: bytes(needed),
+            available: bytes(available),
+        }),
+        _ => Ok(()),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{pack_summary, scene_file};
 
 pub fn pack(arguments: &PackArguments) -> Result<(), Failure> {
     scene_file::start_threads(arguments.threads)?;
-    let pack = scene_file::place_grains(&arguments.scene)?;
+    let pack = scene_file::place_grains(&arguments.scene, arguments.any_size)?;
     if let Some(path) = &arguments.output {
         write_grains(path, pack.grains.values())?;
     } else if !arguments.summary {

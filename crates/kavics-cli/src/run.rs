@@ -28,7 +28,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         check_room(&folder, arguments.force)?;
     }
     let threads = scene_file::start_threads(arguments.threads)?;
-    let (mut scene, table) = scene_file::read(&arguments.scene)?;
+    let (mut scene, table) = scene_file::read(&arguments.scene, arguments.any_size)?;
     check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
     scene.text = own_files::named(&scene.text, &scene.layers);
     let began = Instant::now();

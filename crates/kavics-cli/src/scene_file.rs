@@ -9,13 +9,18 @@ use kavics_results::read_grains;
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
+use crate::limits::check_placing;
 use crate::overrides::Changed;
 pub use crate::terminal::{say, show_warnings};
 use crate::{compared, overrides, own_files};
 
 /// Reads the scene file, with what `--set` says, and the table that it is compared with.
-pub fn read(arguments: &SceneArguments) -> Result<(Scene, Option<ComparedTable>), Failure> {
+pub fn read(
+    arguments: &SceneArguments,
+    any_size: bool,
+) -> Result<(Scene, Option<ComparedTable>), Failure> {
     with_text(arguments, |text, name, folder| {
+        check_placing(text, true, any_size)?;
         let mut scene = Scene::parse(text, name, folder, &read_grains).map_err(Failure::Scene)?;
         let Some(path) = scene.compare.clone() else {
             return Ok((scene, None));
@@ -30,8 +35,9 @@ pub fn read(arguments: &SceneArguments) -> Result<(Scene, Option<ComparedTable>)
 }
 
 /// Reads no more of the scene file than places the grains.
-pub fn place_grains(arguments: &SceneArguments) -> Result<Pack, Failure> {
+pub fn place_grains(arguments: &SceneArguments, any_size: bool) -> Result<Pack, Failure> {
     with_text(arguments, |text, name, folder| {
+        check_placing(text, false, any_size)?;
         Scene::place_grains(text, name, folder, &read_grains).map_err(Failure::Scene)
     })
 }

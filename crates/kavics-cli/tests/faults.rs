@@ -166,3 +166,31 @@ fn where_no_checkpoint_is_whole_nothing_is_touched() {
     assert!(files(&place.folder("damaged")) == before);
     assert_readable(&place.folder("damaged"), 3);
 }
+
+#[test]
+fn grains_that_have_no_room_in_memory_are_refused_before_they_are_placed() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let scene = "[box]\nwidth = 20000.0\nheight = \"fit\"\n[grains.square]\nradius = 1.0\n\
+                 rows = { count = 9000, longest = 9000 }\n";
+    fs::write(room.path().join("large.toml"), scene).expect("room on the disk");
+    for task in ["check", "pack", "run"] {
+        let script = "ulimit -v 2000000; exec \"$0\" \"$@\"";
+        let mut shell = Command::new("sh");
+        shell.args([
+            "-c",
+            script,
+            env!("CARGO_BIN_EXE_kavics"),
+            task,
+            "large.toml",
+        ]);
+        let refused = shell.current_dir(room.path()).output().expect("a shell");
+        let said = said(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains("GB of memory needed, 2000 MB available")
+                || said.contains("GB of memory needed, 2048 MB available"),
+            "{said}"
+        );
+        assert!(!room.path().join("large.results").exists());
+    }
+}

@@ -85,6 +85,13 @@ pub fn grains(
     placed.map(pack).ok_or(checker)
 }
 
+/// About the number of grains that would be placed, but for those of lists; none where box or grains are wrong.
+pub fn planned_grains(file: &SceneFile) -> Option<f64> {
+    let mut checker = Checker::of(file);
+    let plan = check_layers::grains(file, &mut checker)?;
+    Some(plan.layers.iter().filter_map(|layer| layer.about).sum())
+}
+
 fn seed(file: &SceneFile, checker: &mut Checker) -> Option<u64> {
     let Some(seed) = &file.seed else {
         return Some(0);

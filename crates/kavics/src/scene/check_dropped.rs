@@ -143,24 +143,26 @@ pub enum Fill<'a> {
 }
 
 impl Fill<'_> {
-    /// Whether a layer of this area, `[length²]`, is filled in a time that anybody waits for, by an estimate of the
-    /// number of grains.
-    pub fn can_be_done(self, area: f64, span: &Range<usize>, checker: &mut Checker) -> Option<()> {
+    /// About the number of grains that fill a layer of this area, `[length²]`.
+    pub fn grains(self, area: f64) -> f64 {
         // Discs of one size cover about so much of the plane.
         const COVERED: f64 = 0.8;
-        let grains = |sizes: &Sizes, covered: f64| covered * area / mean_area(sizes);
-        let (number, tries, most) = match self {
-            Self::Dropped(plan) => (
-                grains(&plan.sizes, COVERED),
-                plan.tries,
-                MOST_DROPS_OF_A_FILL,
-            ),
+        let (sizes, covered) = match self {
+            Self::Dropped(plan) => (&plan.sizes, COVERED),
+            Self::Front(plan) => (&plan.sizes, COVERED),
+            Self::Target(plan) => (&plan.sizes, plan.packing_fraction),
+        };
+        covered * area / mean_area(sizes)
+    }
+
+    /// Whether a layer of this area, `[length²]`, is filled in a time that anybody waits for.
+    pub fn can_be_done(self, area: f64, span: &Range<usize>, checker: &mut Checker) -> Option<()> {
+        let number = self.grains(area);
+        let (tries, most) = match self {
+            Self::Dropped(plan) => (plan.tries, MOST_DROPS_OF_A_FILL),
             Self::Front(plan) if plan.count.is_some() => return Some(()),
-            Self::Front(plan) => (grains(&plan.sizes, COVERED), 1, MOST_IN_FRONT),
-            Self::Target(plan) => {
-                let number = grains(&plan.sizes, plan.packing_fraction);
-                (number, 1, MOST_IN_TARGET)
-            }
+            Self::Front(_) => (1, MOST_IN_FRONT),
+            Self::Target(_) => (1, MOST_IN_TARGET),
         };
         if number * tries as f64 <= most as f64 {
             return Some(());

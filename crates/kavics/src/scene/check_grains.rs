@@ -40,6 +40,17 @@ impl GrainSource {
         }
     }
 
+    /// The number of grains, where it is given; a list has its own.
+    pub fn count(&self) -> Option<usize> {
+        match self {
+            Self::Hexagonal(_, rows) => Some(rows.iter().sum()),
+            Self::Square(_, columns, rows) => Some(columns * rows),
+            Self::Dropped(plan) => plan.count,
+            Self::AdvancingFront(plan) => plan.count,
+            Self::Target(_) | Self::Listed(_) => None,
+        }
+    }
+
     /// What fills a layer up to its top; none where the number of grains or their places are given.
     pub fn fill(&self) -> Option<Fill<'_>> {
         match self {

@@ -29,6 +29,8 @@ pub struct LayerPlan {
     pub source: GrainSource,
     /// Height up to which it is filled, if it is, `[length]`.
     pub top: Option<f64>,
+    /// Number of its grains, where it is filled about; none where a list has them.
+    pub about: Option<f64>,
     /// Where its grains stand in the file.
     pub span: Range<usize>,
 }
@@ -56,12 +58,19 @@ pub fn grains(file: &SceneFile, checker: &mut Checker) -> Option<GrainsPlan> {
         } else {
             Some(top(table, &span, last, below, &container, checker)?)
         };
+        let mut about = source.count().map(|count| count as f64);
         if let (Some(fill), Some(top)) = (source.fill(), top) {
             let area = container.part(below, top).map_or(0.0, |part| part.area());
             fill.can_be_done(area, &span, checker)?;
+            about = about.or(Some(fill.grains(area)));
             below = top;
         }
-        layers.push(LayerPlan { source, top, span });
+        layers.push(LayerPlan {
+            source,
+            top,
+            about,
+            span,
+        });
     }
     let span = layers.first()?.span.clone();
     Some(GrainsPlan {

@@ -8,12 +8,15 @@ use super::file_grains::LatticeFile;
 use super::unit::Dimension;
 use super::value::{ListOr, Placed};
 
-/// Row lengths, each with its place.
-fn rows(file: &LatticeFile, shorter: usize, checker: &mut Checker) -> Option<Vec<Placed<usize>>> {
-    let placed = |value, span: &Range<usize>| Placed {
-        value,
-        span: span.clone(),
-    };
+/// Rows as they are given.
+enum Rows {
+    /// Row lengths, each with its place.
+    Listed(Vec<Placed<usize>>),
+    /// Number of rows and length of the longest: there may be too many to give each a place.
+    Counted { count: usize, longest: usize },
+}
+
+fn rows(file: &LatticeFile, shorter: usize, checker: &mut Checker) -> Option<Rows> {
     match &file.rows.value {
         ListOr::List(list) if list.is_empty() => {
             checker.push(Problem::at(
@@ -23,10 +26,18 @@ fn rows(file: &LatticeFile, shorter: usize, checker: &mut Checker) -> Option<Vec
             ));
             None
         }
-        ListOr::List(list) => list
-            .iter()
-            .map(|row| Some(placed(checker.count(row, "rows", 1)?, &row.span)))
-            .collect(),
+        ListOr::List(list) => {
+            let length = |row: &Placed<i64>| {
+                Some(Placed {
+                    value: checker.count(row, "rows", 1)?,
+                    span: row.span.clone(),
+                })
+            };
+            list.iter()
+                .map(length)
+                .collect::<Option<_>>()
+                .map(Rows::Listed)
+        }
         ListOr::Table(table) => {
             let count = checker.count(&table.count, "count", 1);
             let longest = checker.count(&table.longest, "longest", 1 + shorter as i64);
@@ -39,12 +50,7 @@ fn rows(file: &LatticeFile, shorter: usize, checker: &mut Checker) -> Option<Vec
                 ));
                 return None;
             }
-            let length = |row: usize| longest - shorter * (row % 2);
-            Some(
-                (0..count)
-                    .map(|row| placed(length(row), &file.rows.span))
-                    .collect(),
-            )
+            Some(Rows::Counted { count, longest })
         }
     }
 }
@@ -55,7 +61,13 @@ const MOST_GRAINS: usize = 100_000_000;
 /// Radius and grains of each row.
 pub fn hexagonal_rows(file: &LatticeFile, checker: &mut Checker) -> Option<(f64, Vec<usize>)> {
     let radius = checker.number(&file.radius, "radius", Dimension::Length, Bound::Positive);
-    let rows = rows(file, 1, checker)?;
+    let rows = match rows(file, 1, checker)? {
+        Rows::Counted { count, longest } => {
+            let rows = (0..count).map(|row| longest - row % 2).collect();
+            return Some((radius?, rows));
+        }
+        Rows::Listed(rows) => rows,
+    };
     for (number, pair) in rows.windows(2).enumerate() {
         if pair[0].value.abs_diff(pair[1].value) % 2 == 0 {
             checker.push(
@@ -83,7 +95,10 @@ pub fn hexagonal_rows(file: &LatticeFile, checker: &mut Checker) -> Option<(f64,
 /// Radius, grains of a row, rows.
 pub fn square_rows(file: &LatticeFile, checker: &mut Checker) -> Option<(f64, usize, usize)> {
     let radius = checker.number(&file.radius, "radius", Dimension::Length, Bound::Positive);
-    let rows = rows(file, 0, checker)?;
+    let rows = match rows(file, 0, checker)? {
+        Rows::Counted { count, longest } => return Some((radius?, longest, count)),
+        Rows::Listed(rows) => rows,
+    };
     let first = rows.first()?.value;
     if let Some(other) = rows.iter().find(|row| row.value != first) {
         checker.push(Problem::at(
@@ -98,7 +113,11 @@ pub fn square_rows(file: &LatticeFile, checker: &mut Checker) -> Option<(f64, us
 }
 
 fn total(rows: &[Placed<usize>], span: &Range<usize>, checker: &mut Checker) -> Option<()> {
-    if rows.iter().map(|row| row.value).sum::<usize>() <= MOST_GRAINS {
+    if rows
+        .iter()
+        .fold(0, |sum: usize, row| sum.saturating_add(row.value))
+        <= MOST_GRAINS
+    {
         return Some(());
     }
     checker.push(Problem::at(

@@ -154,6 +154,13 @@ impl Scene {
         build::grains(&file, folder, grain_lists).map_err(|checker| checker.error(text, name))
     }
 
+    /// About the number of grains that placing them would give, before any is placed; those of lists do not count.
+    ///
+    /// None where the text is no scene file, or its box or grains are wrong.
+    pub fn planned_grains(text: &str) -> Option<f64> {
+        build::planned_grains(&parse_file(text, "").ok()?)
+    }
+
     /// The equilibria of this scene, one load step after the other.
     pub fn load_path(&self) -> LoadPath<'_> {
         LoadPath::new(
