@@ -1,11 +1,13 @@
 //! Invariants of dropped packs.
 
 use kavics::assembly::Grain;
-use kavics::geometry::Vector;
+use kavics::geometry::{Container, Vector};
 use kavics::ids::{GrainId, Id, PerGrain};
 use kavics::packing::dropped::{drop, fill};
 use kavics::packing::statistics::{packing_fraction, sieve_curve};
-use kavics::packing::{Bed, Dropped, Mass, PackingError, SieveCurve, Sizes, Source, Support, rows};
+use kavics::packing::{
+    Bed, Dropped, Mass, PackingError, SieveCurve, Sizes, Source, Support, advancing_front, rows,
+};
 use proptest::prelude::*;
 
 const SEED: u64 = 1;
@@ -310,6 +312,41 @@ fn what_cannot_be_dropped_says_why() {
         says(fill(&below(3.0, 9.0), &uniform(1.0, 2.0), 1, SEED)),
         "a grain of diameter 3.6666666666666665 does not fit into a box of height 3"
     );
+}
+
+#[test]
+fn grains_that_coordinates_cannot_tell_apart_are_refused() {
+    let (width, radius) = (1.0, 1e-12);
+    let square = [(0.0, 0.0), (width, 0.0), (width, width), (0.0, width)];
+    let container = Container::polygon(&square.map(|(x, y)| Vector::new(x, y)));
+    let sizes = uniform(radius, radius);
+    let refused = [
+        drop(&Bed::empty_box(width), &[radius; 8], 1, SEED).map(|dropped| dropped.grains),
+        advancing_front(&container, &sizes, Some(8), SEED),
+        rows::square(radius, width, 2, 2),
+    ];
+    for refused in refused {
+        let error = refused.expect_err("a refusal").to_string();
+        let expected =
+            "radius 0.000000000001 is less than 1e-10 of the coordinates of the container, up to 1";
+        assert_eq!(error, expected);
+    }
+}
+
+#[test]
+fn lengths_whose_areas_overflow_are_refused() {
+    for radius in [1e200, f64::MAX, f64::INFINITY, f64::NAN, 0.0, 1e-200] {
+        let refused = drop(&Bed::empty_box(1e30), &[radius], 1, SEED);
+        assert!(
+            matches!(refused, Err(PackingError::Radius { .. })),
+            "{radius}"
+        );
+        let refused = rows::square(1.0, radius, 1, 1);
+        assert!(
+            matches!(refused, Err(PackingError::BoxLength { .. })),
+            "{radius}"
+        );
+    }
 }
 
 #[test]

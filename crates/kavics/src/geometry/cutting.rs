@@ -178,7 +178,9 @@ impl Clipping<'_> {
                 let farthest = cell.farthest_squared;
                 let reach = farthest.sqrt() + (farthest + grown).max(0.0).sqrt();
                 let reach = reach * (1.0 + 1e-6);
-                if cell.edges.is_empty() || reach <= done || reach.is_nan() {
+                // Cut by discs that nearly coincide, a cell may grow by roundings, again and again.
+                let is_done = reach <= done * (1.0 + 1e-9);
+                if cell.edges.is_empty() || is_done || reach.is_nan() {
                     break;
                 }
                 let step = if done == 0.0 {
@@ -189,6 +191,9 @@ impl Clipping<'_> {
                 let distance = if step > 0.0 { reach.min(step) } else { reach };
                 for other in grid.around(level, disc.centre, distance).flatten() {
                     self.cut(disc, other, cell);
+                }
+                if level.is_all_within(disc.centre, distance) {
+                    break;
                 }
                 done = distance;
             }

@@ -74,6 +74,21 @@ impl Level {
         self.first_cell + self.row(centre.y) * self.columns + self.column(centre.x)
     }
 
+    /// Whether all its cells are in a square.
+    pub(super) fn is_all_within(&self, centre: Vector, distance: f64) -> bool {
+        let (low, high) = (
+            centre - Vector::new(distance, distance),
+            centre + Vector::new(distance, distance),
+        );
+        let ends = [
+            self.column(low.x),
+            self.row(low.y),
+            self.column(high.x),
+            self.row(high.y),
+        ];
+        ends == [0, 0, self.columns - 1, self.rows - 1]
+    }
+
     fn column(&self, x: f64) -> usize {
         (((x - self.origin.x) * self.cells_a_length).max(0.0) as usize).min(self.columns - 1)
     }
@@ -223,7 +238,7 @@ impl Grid {
     ) {
         let (own_level, coarser) = (&self.levels[level], &self.levels[level + 1..]);
         let farthest = (2.0 * own_level.largest_radius + reach).max(0.0) * (1.0 + 1e-9);
-        let rings = (farthest * own_level.cells_a_length) as usize + 1;
+        let rings = ((farthest * own_level.cells_a_length) as usize).saturating_add(1);
         let last_row = row.saturating_add(rings).min(own_level.rows - 1);
         for column in 0..own_level.columns {
             let first = column.saturating_sub(rings);
@@ -329,6 +344,12 @@ mod tests {
         assert_eq!(pairs(&row, 2.0), [(0, 1), (1, 2)]);
         assert_eq!(pairs(&row, 1.9), [(1, 2)]);
         assert_eq!(pairs(&row, 100.0), [(0, 1), (0, 2), (1, 2)]);
+    }
+
+    #[test]
+    fn a_reach_beyond_all_counts_meets_all() {
+        let row = [(0.0, 0.0, 1e-15), (1.0, 0.0, 1e-15), (1.0, 1.0, 1e-15)];
+        assert_eq!(pairs(&row, 1e30), [(0, 1), (0, 2), (1, 2)]);
     }
 
     #[test]

@@ -14,14 +14,24 @@ pub enum PackingError {
         /// Largest number of grains.
         most: usize,
     },
-    /// A radius that is not a positive number.
-    #[error("radius {radius} is not a positive number")]
+    /// A radius that is not a positive number, or farther from 1 than 30 powers of ten.
+    #[error("radius {radius} is not a positive number of at most 1e30 (and at least 1e-30)")]
     Radius {
         /// The radius, `[length]`.
         radius: f64,
     },
-    /// A width or height that is not a positive number.
-    #[error("box length {length} is not a positive number")]
+    /// A grain so much smaller than its container that coordinates hardly tell its places apart.
+    #[error(
+        "radius {radius} is less than 1e-10 of the coordinates of the container, up to {farthest}"
+    )]
+    TooSmall {
+        /// The smallest radius, `[length]`.
+        radius: f64,
+        /// The largest coordinate of the container, `[length]`.
+        farthest: f64,
+    },
+    /// A width or height that is not a positive number, or farther from 1 than 30 powers of ten.
+    #[error("box length {length} is not a positive number of at most 1e30 (and at least 1e-30)")]
     BoxLength {
         /// The length, `[length]`.
         length: f64,

@@ -20,11 +20,20 @@ pub use random::{Purpose, Source, Stream};
 pub use sieve::{Mass, SieveCurve, Sizes};
 pub use target::target;
 
+use crate::geometry::Container;
+
 /// Most grains that are placed: ids and memory end somewhere above.
 pub const MOST_GRAINS: usize = 1 << 28;
 
+/// Largest and, as its reciprocal, smallest length: areas of larger ones overflow.
+const LARGEST: f64 = 1e30;
+
+fn is_length(value: f64) -> bool {
+    (LARGEST.recip()..=LARGEST).contains(&value)
+}
+
 fn check_radius(radius: f64) -> Result<(), PackingError> {
-    if radius > 0.0 && radius.is_finite() {
+    if is_length(radius) {
         Ok(())
     } else {
         Err(PackingError::Radius { radius })
@@ -32,11 +41,30 @@ fn check_radius(radius: f64) -> Result<(), PackingError> {
 }
 
 fn check_box(length: f64) -> Result<(), PackingError> {
-    if length > 0.0 && length.is_finite() {
+    if is_length(length) {
         Ok(())
     } else {
         Err(PackingError::BoxLength { length })
     }
+}
+
+/// Whether the smallest of some radii is more than rounding, in a container whose corners have coordinates up to
+/// `farthest`, `[length]`.
+fn check_resolution(radii: &[f64], farthest: f64) -> Result<(), PackingError> {
+    // 1e-10 of the container: its corners are known to 1e-16, so such a grain has six digits.
+    const SMALLEST: f64 = 1e-10;
+    let radius = radii.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+    if radius >= SMALLEST * farthest {
+        Ok(())
+    } else {
+        Err(PackingError::TooSmall { radius, farthest })
+    }
+}
+
+/// Largest coordinate of the corners of a container, whatever its sign.
+fn farthest(container: &Container) -> f64 {
+    let corners = container.corners().iter();
+    corners.fold(0.0_f64, |far, c| far.max(c.x.abs()).max(c.y.abs()))
 }
 
 fn check_count(count: usize) -> Result<(), PackingError> {

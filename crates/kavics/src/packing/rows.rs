@@ -6,7 +6,7 @@
 use crate::assembly::Grain;
 use crate::geometry::Vector;
 use crate::ids::PerGrain;
-use crate::packing::{PackingError, check_box, check_count, check_radius};
+use crate::packing::{PackingError, check_box, check_count, check_radius, check_resolution};
 
 /// Grains of equal `radius` in hexagonal rows in a box of the given `width`; `rows` has the grains of each row from the
 /// bottom, and neighbours differ by an odd number.
@@ -72,6 +72,7 @@ fn place(
 fn check(radius: f64, width: f64, rows: &[usize]) -> Result<(), PackingError> {
     check_radius(radius)?;
     check_box(width)?;
+    check_resolution(&[radius], width)?;
     for (number, &grains) in rows.iter().enumerate() {
         let length = 2.0 * radius * grains as f64;
         // Decimal numbers of the scene may miss each other by a rounding.

@@ -10,7 +10,7 @@
 //! ```
 
 use crate::packing::random::{Purpose, Source, stream};
-use crate::packing::{PackingError, check_count, check_radius};
+use crate::packing::{PackingError, check_count, check_radius, is_length};
 
 /// How the mass of a grain grows with its diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,7 +120,7 @@ impl SieveCurve {
         }
         let mut previous = 0.0;
         for (number, &diameter) in (1..).zip(&self.diameter) {
-            if !(diameter > previous && diameter.is_finite()) {
+            if !(diameter > previous && is_length(diameter)) {
                 return Err(PackingError::SieveDiameter {
                     number,
                     diameter,

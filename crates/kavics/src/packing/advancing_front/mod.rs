@@ -22,7 +22,7 @@ use crate::ids::PerGrain;
 use crate::packing::advancing_front::start::start;
 use crate::packing::advancing_front::waiting::Waiting;
 use crate::packing::random::{Purpose, stream};
-use crate::packing::{PackingError, Sizes, check_count};
+use crate::packing::{PackingError, Sizes, check_count, check_resolution, farthest};
 
 /// More than any share of a container that grains fill in the first attempt.
 const MOST_SOLID: f64 = 0.93;
@@ -180,6 +180,7 @@ fn pack(
     after: f64,
     seed: u64,
 ) -> Result<Packed, PackingError> {
+    check_resolution(&radii, farthest(container))?;
     bring_forward(&mut radii, after, seed);
     let mut front = start(container, &radii, seed)?;
     let placed = front.cells.count();

@@ -26,7 +26,7 @@ use crate::assembly::Grain;
 use crate::geometry::Container;
 use crate::ids::{GrainId, PerGrain, SideId};
 use crate::packing::dropped::rolling::{MOST_MOVES, Pack};
-use crate::packing::{PackingError, check_count, check_radius};
+use crate::packing::{PackingError, check_count, check_radius, check_resolution, farthest};
 
 pub use crate::packing::dropped::filling::fill;
 
@@ -56,6 +56,14 @@ pub enum Shape {
 }
 
 impl Bed<'_> {
+    /// Largest coordinate that is known before grains are dropped.
+    fn farthest(&self) -> f64 {
+        match &self.shape {
+            Shape::Box { width } => width.max(self.top.unwrap_or_default()),
+            Shape::Polygon(container) => farthest(container),
+        }
+    }
+
     /// An empty box of a `width`, open above.
     pub fn empty_box(width: f64) -> Self {
         Self {
@@ -139,6 +147,7 @@ pub(super) fn drop_while_room(
     seed: u64,
 ) -> Result<Dropped, PackingError> {
     check(radii, tries)?;
+    check_resolution(radii, bed.farthest())?;
     let top = bed.top.unwrap_or(f64::INFINITY);
     let mut pack = Pack::new(bed, radii, seed)?;
     let mut grains = Vec::with_capacity(radii.len());

@@ -19,7 +19,7 @@ use crate::packing::target::exchange::densify;
 use crate::packing::target::relaxation::Relaxation;
 use crate::packing::target::soft_discs::{SoftDiscs, Sums};
 use crate::packing::target::spread::spread;
-use crate::packing::{PackingError, Sizes};
+use crate::packing::{PackingError, Sizes, check_resolution, farthest};
 
 /// Play and iterations while the grains keep their radii.
 const KEEPING: (f64, usize) = (1e-6, 1000);
@@ -128,6 +128,7 @@ fn radii(
         return Err(PackingError::BoxLength { length: area });
     }
     let radii = nearest_radii(sizes, packing_fraction * area, seed)?;
+    check_resolution(&radii, farthest(container))?;
     let largest = radii.iter().fold(0.0_f64, |a, &b| a.max(b));
     if !fits(container, largest * (1.0 + KEEPING.0)) {
         let diameter = 2.0 * largest;
