@@ -14,6 +14,7 @@ use arrow_schema::{ArrowError, DataType, Field, Schema};
 use kavics::equilibrium::{Memory, MemoryColumn};
 
 use crate::checkpoint::CheckpointHeader;
+use crate::checkpoint_frame;
 
 /// What the columns of the tables begin with.
 const TABLE: &str = "table:";
@@ -67,13 +68,14 @@ fn as_list((name, values): (String, ArrayRef)) -> (Field, ArrayRef) {
 
 /// The header of a checkpoint.
 pub(crate) fn header(bytes: &[u8]) -> Result<CheckpointHeader, ArrowError> {
+    checkpoint_frame::check(bytes)?;
     let reader = FileReader::try_new(Cursor::new(bytes), None)?;
     let schema = reader.schema();
     let json = schema.metadata().get(HEADER).map_or("", String::as_str);
     serde_json::from_str(json).map_err(|error| ArrowError::ParseError(error.to_string()))
 }
 
-/// Memory and tables of a checkpoint.
+/// Memory and tables of a checkpoint whose header was read.
 pub(crate) fn decode(bytes: &[u8]) -> Result<(Memory, BTreeMap<String, RecordBatch>), ArrowError> {
     let mut reader = FileReader::try_new(Cursor::new(bytes), None)?;
     let nothing = || ArrowError::ParseError("there is no row".to_owned());

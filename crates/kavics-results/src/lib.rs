@@ -6,6 +6,7 @@
 mod actions;
 mod checkpoint;
 mod checkpoint_file;
+mod checkpoint_frame;
 mod chosen_columns;
 mod column;
 mod contacts;

@@ -11,6 +11,7 @@ use kavics::measure::Tensor;
 use kavics::scene::Scene;
 use kavics_results::{Checkpoint, Options, Results, ResultsError};
 use proptest::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
 
 fn memory(numbers: Vec<f64>) -> Memory {
     let mut memory = Memory::default();
@@ -78,6 +79,27 @@ fn damage_anywhere_is_seen_and_the_older_checkpoint_is_taken() {
             assert_eq!(older.notes.len(), 1);
         }
     }
+}
+
+/// The hash keeps damage out; what is made to have it must be read with care all the same.
+#[test]
+fn bytes_that_were_changed_together_with_their_hash_are_read_with_care() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let (folder, scene) = (place.path().join("results"), block::scene(7, 5));
+    let [older, newer] = two(&folder, &scene);
+    fs::remove_file(older).expect("a file");
+    let whole = fs::read(&newer).expect("a file");
+    fs::remove_file(&newer).expect("a file");
+    let mut refused = 0;
+    for place in (0..whole.len()).step_by(7) {
+        let mut changed = whole.clone();
+        changed[place] = !changed[place];
+        let name = format!("checkpoint/000001-{:016x}.arrow", xxh3_64(&changed));
+        fs::write(folder.join(&name), changed).expect("room on the disk");
+        refused += usize::from(Checkpoint::newest(&folder, &scene).is_err());
+        fs::remove_file(folder.join(&name)).expect("a file");
+    }
+    assert!(refused > 100, "{refused}");
 }
 
 #[test]
