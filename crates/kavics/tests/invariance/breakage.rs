@@ -214,12 +214,17 @@ proptest! {
         let twins = twins(&Pile::dropped(seed), &material, &acting, change)?;
         runs_agree(&twins, breakage)?;
     }
+}
+
+proptest! {
+    // A search through the phases of contacts takes long.
+    #![proptest_config(ProptestConfig { failure_persistence: None, max_shrink_iters: 30, ..ProptestConfig::with_cases(12) })]
 
     /// The same contacts slide and are open at the end of each load step.
     #[test]
     fn the_same_contacts_slide_and_open(
-        acting in loads(), angle in -2.0..-1.1_f64, change in changes(50.0), is_layer in any::<bool>(),
-        friction in 0.2..0.8_f64,
+        acting in loads(), angle in -1.7..-1.45_f64, change in changes(50.0), is_layer in any::<bool>(),
+        friction in 0.3..0.8_f64,
     ) {
         let weight = Vector::new(libm::cos(angle), libm::sin(angle));
         let push = Load::default();
@@ -229,11 +234,6 @@ proptest! {
         let twins = twins(&Pile::of_rows(), &material, &acting, change)?;
         runs_agree(&finished(twins), Breakage::WorstFirst)?;
     }
-}
-
-proptest! {
-    // A search through the phases of contacts takes long.
-    #![proptest_config(ProptestConfig { failure_persistence: None, max_shrink_iters: 30, ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn broken_bonds_rub_on_alike(
@@ -252,8 +252,8 @@ proptest! {
     /// iterations. A number in the code that has a dimension would be found here.
     #[test]
     fn a_scale_of_a_power_of_four_changes_no_digit(
-        seed in 0_u64..1000, acting in loads(), angle in -2.0..-1.1_f64, power in prop::sample::select(vec![-3, -1, 1, 2]),
-        level in 1.0..10.0_f64, is_layer in any::<bool>(), friction in prop::option::of(0.2..0.8_f64), is_cemented in any::<bool>(),
+        seed in 0_u64..1000, acting in loads(), angle in -1.7..-1.45_f64, power in prop::sample::select(vec![-3, -1, 1, 2]),
+        level in 1.0..10.0_f64, is_layer in any::<bool>(), friction in prop::option::of(0.3..0.8_f64), is_cemented in any::<bool>(),
         breakage in prop::sample::select(vec![Breakage::WorstFirst, Breakage::Simultaneous, Breakage::EventDriven]),
     ) {
         let is_cemented = is_cemented || friction.is_none();
