@@ -7,6 +7,7 @@ use super::Load;
 use super::configuration::{Configuration, Progress};
 use super::sparsity::{Sparsity, Stored};
 use super::system::System;
+use super::tangent::weights;
 use crate::ids::{Id, PerBody};
 use crate::solver::{GeneralSolver, Singular, SymmetricSolver};
 
@@ -197,9 +198,11 @@ impl System<'_> {
         let mut values = self.values_without(configuration, iteration, sparsity, &self.set_aside);
         if proximal > 0.0 {
             let spring = proximal * closed_stiffness(configuration);
+            let weights = weights(self.assembly, &self.numbers);
             for (body, numbers) in self.numbers.iter().enumerate() {
                 for number in numbers.iter().flatten().filter(|_| !self.set_aside[body]) {
-                    values[sparsity.pattern.diagonal(*number as usize)] += spring;
+                    let number = *number as usize;
+                    values[sparsity.pattern.diagonal(number)] += spring * weights[number];
                 }
             }
         }
