@@ -36,6 +36,12 @@ pub enum ResultsError {
         /// What the run needs.
         path: PathBuf,
     },
+    /// Another run writes to the folder.
+    #[error("{} is being written by another run; wait for its end, or name another folder by -o", folder.display())]
+    Locked {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
     Unreadable {
