@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::ResultsError;
 use crate::checkpoint::{CHECKPOINT, is_generation};
+use crate::folder::has_record;
 use crate::lock::LOCK;
 
 /// Folders of tables, a file a recorded load step.
@@ -42,7 +43,7 @@ pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
     if is_empty(folder) {
         return Ok(());
     }
-    if !folder.join("run.json").is_file() {
+    if !has_record(folder)? {
         return Err(ResultsError::NotResults {
             folder: folder.to_owned(),
         });
