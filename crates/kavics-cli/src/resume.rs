@@ -77,6 +77,12 @@ fn begin_locked<'a>(
 pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<Start<'a>, Failure> {
     check_own(folder)?;
     let lock = lock(folder)?;
+    let record = ResultsFolder::open(folder).and_then(|results| results.record());
+    if record.is_ok_and(|r| matches!(r.state, RunState::Done | RunState::NoEquilibrium)) {
+        // Another run has come to its end since its record was looked at.
+        let folder = folder.to_owned();
+        return Err(ResultsError::Locked { folder }.into());
+    }
     let Some(checkpoint) = Checkpoint::newest(folder, scene)? else {
         clear_unfinished(folder)?;
         check_room(folder, false)?;

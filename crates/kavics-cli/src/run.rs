@@ -9,9 +9,10 @@ use kavics::loading::{LoadPath, Station};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
 use kavics::warning::WarningKind;
+use kavics_report::ComparedTable;
 use kavics_results::{
     Lock, Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
-    clear_checkpoints,
+    clear_checkpoints, clear_unpublished,
 };
 
 use crate::arguments::RunArguments;
@@ -34,9 +35,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         check_room(&folder, arguments.force)?;
     }
     let threads = scene_file::start_threads(arguments.threads)?;
-    let (mut scene, table) = scene_file::read(&arguments.scene)?;
-    check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
-    scene.text = own_files::named(&scene.text, &scene.layers);
+    let (scene, table) = prepare(arguments, &folder)?;
     let began = Instant::now();
     if terminal::loudness() == terminal::Loudness::Verbose {
         terminal::say_more(&opening(&scene, threads));
@@ -45,7 +44,6 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         threads,
         replace: arguments.force,
     };
-    Estimate::of(&scene).check(arguments.any_size)?;
     let told = signals.begin()?;
     fault::name_results(&folder);
     let start = if arguments.resume {
@@ -89,6 +87,18 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             folder,
         }),
     }
+}
+
+/// The scene as it will run, and the table that it is compared with.
+fn prepare(
+    arguments: &RunArguments,
+    folder: &Path,
+) -> Result<(Scene, Option<ComparedTable>), Failure> {
+    let (mut scene, table) = scene_file::read(&arguments.scene)?;
+    check_apart(folder, &scene_file::files_read(&arguments.scene, &scene))?;
+    scene.text = own_files::named(&scene.text, &scene.layers);
+    Estimate::of(&scene).check(arguments.any_size)?;
+    Ok((scene, table))
 }
 
 /// Writes what has not been written, and sums the run up.
@@ -195,6 +205,7 @@ fn finished(folder: &Path) -> Result<(), Failure> {
         let _lock = resume::lock(folder)?;
         clear_checkpoints(folder)?;
     }
+    clear_unpublished(folder)?;
     if folder.join("report.html").is_file() {
         return Ok(());
     }

@@ -119,12 +119,17 @@ fn an_older_version_wrote_the_tables() {
         format!("{}\n}}\n", &text[..packing]).into_bytes()
     });
     let [measure, report, draw, export] = EVERY;
-    for task in [measure, report, export] {
+    for task in [measure, report] {
         let done = kavics(place.path(), task);
         let said = String::from_utf8_lossy(&done.stderr);
         assert!(done.status.success(), "{task:?}: {said}");
     }
-    all_say(&[draw], place.path(), 4, "run.json keeps no container");
+    all_say(
+        &[draw, export],
+        place.path(),
+        4,
+        "run.json keeps no container",
+    );
 }
 
 #[test]

@@ -249,6 +249,22 @@ fn results_that_are_finished_stay_as_they_are() {
 }
 
 #[test]
+fn what_a_killed_report_left_is_taken_away() {
+    let place = Place::with(SLIDING);
+    let folder = place.folder("whole");
+    let before = broken_off::files(&folder);
+    fs::create_dir(folder.join("checkpoint")).expect("room on the disk");
+    for name in ["checkpoint/lock", ".report.html.Ab3xYz", "notes.txt"] {
+        fs::write(folder.join(name), "").expect("room on the disk");
+    }
+    assert_eq!(place.run("whole", &["--resume"]).status.code(), Some(0));
+    // What does not belong to the run stays.
+    fs::remove_file(folder.join("notes.txt")).expect("a file");
+    assert!(broken_off::files(&folder) == before);
+    assert!(!folder.join("checkpoint").exists());
+}
+
+#[test]
 fn with_nothing_to_go_on_from_a_run_begins_at_the_beginning_and_says_so() {
     let place = Place::with(SLIDING);
     let said = place.assert_ends_alike("new", &[]);

@@ -53,7 +53,7 @@ pub use packing_record::{CurveRecord, MassRecord, PackingRecord};
 pub use record::{RunRecord, RunState, SCHEMA_VERSION};
 pub use recorded::Recorded;
 pub use results::{Options, Results};
-pub use room::{check_apart, check_own, check_room, clear_unfinished};
+pub use room::{check_apart, check_own, check_room, clear_unfinished, clear_unpublished};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
 pub use voids::VoidRow;

@@ -143,6 +143,20 @@ pub(crate) fn clear_leftovers(
     )
 }
 
+/// Takes away what is left in the folder itself of files that were not published: a run that has ended, and was killed
+/// while it wrote its report, leaves no more than that.
+///
+/// # Errors
+/// Files that cannot be removed.
+pub fn clear_unpublished(folder: &Path) -> Result<(), ResultsError> {
+    let is_left = |entry: &DirEntry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        name.starts_with('.') && is_file_of_a_run(&name)
+    };
+    let left = entries(folder)?.into_iter().filter(is_left);
+    remove(left.map(|entry| entry.path()).collect())
+}
+
 fn remove(mut files: Vec<PathBuf>) -> Result<(), ResultsError> {
     // Without run.json the rest would be taken for something else, so it goes last.
     files.sort_by_key(|path| path.ends_with("run.json"));

@@ -258,7 +258,7 @@ fn has_checkpoint(place: &Path) -> bool {
     folders
         .map(|entry| entry.expect("an entry").path().join("checkpoint"))
         .filter_map(|folder| fs::read_dir(folder).ok())
-        .flat_map(|files| files.flatten())
+        .flat_map(Iterator::flatten)
         .any(|file| {
             file.path()
                 .extension()
