@@ -13,6 +13,11 @@ use kavics_server::ServerError;
 use kavics_verify::VerifyError;
 use thiserror::Error;
 
+/// Status of a run that a signal stopped, and that can be run again.
+pub const STOPPED: i32 = 75;
+/// Status of what a signal ended at once, as shells count.
+pub const INTERRUPTED: i32 = 130;
+
 /// Why a task failed.
 #[derive(Debug, Error)]
 pub enum Failure {
@@ -61,6 +66,12 @@ pub enum Failure {
         /// Results folder.
         folder: PathBuf,
     },
+    /// A run was told to stop while it placed grains or looked for contacts.
+    #[error("stopped before anything was written; nothing is lost by running it again")]
+    StoppedEarly,
+    /// A task that leaves nothing behind was told to stop.
+    #[error("stopped")]
+    Interrupted,
     /// Signals cannot be waited for.
     #[error("signals: {0}")]
     Signals(#[from] ctrlc::Error),
@@ -123,6 +134,7 @@ impl Failure {
             | ResultsError::NotResults { .. }
             | ResultsError::NotOfARun { .. }
             | ResultsError::InUse { .. }
+            | ResultsError::Locked { .. }
             | ResultsError::OtherScene { .. }
             | ResultsError::SceneChanged { .. }
             | ResultsError::OtherAssembly { .. }
@@ -141,7 +153,8 @@ impl Failure {
             | Self::TooLarge { .. }
             | Self::Report(ReportError::Viewer(PageError::Unrecorded { .. })) => 2,
             Self::NoEquilibrium { .. } | Self::Ended { .. } => 3,
-            Self::Stopped { .. } => 75,
+            Self::Stopped { .. } | Self::StoppedEarly => STOPPED as u8,
+            Self::Interrupted => INTERRUPTED as u8,
             Self::Scene(SceneError::Unreadable { .. })
             | Self::Results(_)
             | Self::Report(_)

@@ -7,6 +7,7 @@ mod draw;
 mod draw_arguments;
 mod export;
 mod failure;
+mod fault;
 mod limits;
 mod measure;
 mod origins;
@@ -26,7 +27,7 @@ mod verify;
 #[cfg(feature = "view")]
 mod view;
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write, stdout};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -35,10 +36,20 @@ use arguments::{Arguments, Task};
 use failure::Failure;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    fault::tell_of_faults();
     signals::let_large_files_fail();
-    terminal::speak(arguments.loudness());
-    match perform(arguments.task) {
+    let done = match Arguments::try_parse() {
+        Ok(arguments) => {
+            terminal::speak(arguments.loudness());
+            perform(arguments.task)
+        }
+        // Help and version are told in this way too.
+        Err(told) => match told.print() {
+            Ok(()) => return ExitCode::from(told.exit_code() as u8),
+            Err(error) => Err(error.into()),
+        },
+    };
+    match done.and_then(|()| Ok(stdout().flush()?)) {
         Ok(()) => ExitCode::SUCCESS,
         // Who stops reading, as head does, has what it wanted.
         Err(Failure::Output(error)) if error.kind() == ErrorKind::BrokenPipe => ExitCode::SUCCESS,

@@ -4,10 +4,7 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::Scene;
-use kavics::warning::WarningKind;
-use kavics_results::{
-    Recorded, ResultsFolder, RunState, StepRow, read_grains, write_steps, write_steps_csv,
-};
+use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
@@ -24,12 +21,9 @@ pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
         None => stdout().write_all(&write_steps_csv(&rows))?,
     }
     scene_file::show_warnings(&scene.warnings);
-    if folder.record()?.state == RunState::Running {
-        let last = rows.last().map_or(0, |row| row.step);
-        scene_file::show_warnings(&[WarningKind::RunUnfinished.says(format_args!(
-            "the run is under way or was broken off; the table ends with load step {last}"
-        ))]);
-    }
+    let last = rows.last().map_or(0, |row| row.step);
+    let unfinished = folder.record()?.state.unfinished(last);
+    scene_file::show_warnings(unfinished.as_slice());
     Ok(())
 }
 

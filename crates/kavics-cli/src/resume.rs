@@ -6,12 +6,12 @@ use kavics::loading::LoadPath;
 use kavics::measure::{Snapshot, grain_stress};
 use kavics::scene::Scene;
 use kavics_results::{
-    Checkpoint, Options, Results, ResultsError, ResultsFolder, RunState, check_room,
-    clear_unfinished,
+    Checkpoint, Lock, Options, Results, ResultsError, ResultsFolder, RunState, check_own,
+    check_room, clear_unfinished,
 };
 
 use crate::failure::Failure;
-use crate::scene_file::say;
+use crate::scene_file::{say, show_warnings};
 
 /// Results to be written, and where the load path begins.
 pub struct Start<'a> {
@@ -19,6 +19,8 @@ pub struct Start<'a> {
     pub results: Results<'a>,
     /// The load path.
     pub path: LoadPath<'a>,
+    /// Keeps other runs out of the folder.
+    pub lock: Lock,
 }
 
 /// How the results ended, if they have: done, or without an equilibrium.
@@ -43,16 +45,44 @@ pub fn ended(folder: &Path) -> Result<Option<Result<(), Failure>>, Failure> {
     })
 }
 
+/// Keeps other runs out of a folder, from now on.
+pub fn lock(folder: &Path) -> Result<Lock, Failure> {
+    let lock = Lock::take(folder)?;
+    if let Some(why_not) = lock.unlocked() {
+        show_warnings(&[why_not]);
+    }
+    Ok(lock)
+}
+
 /// Results from the beginning.
 pub fn begin<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<Start<'a>, Failure> {
+    check_room(folder, options.replace)?;
+    begin_locked(scene, folder, options, lock(folder)?)
+}
+
+fn begin_locked<'a>(
+    scene: &'a Scene,
+    folder: &Path,
+    options: Options,
+    lock: Lock,
+) -> Result<Start<'a>, Failure> {
     Ok(Start {
         results: Results::create(folder, scene, options)?,
         path: scene.load_path(),
+        lock,
     })
 }
 
 /// Results from their last checkpoint; from the beginning where there is none.
 pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<Start<'a>, Failure> {
+    check_own(folder)?;
+    let lock = lock(folder)?;
+    let record = ResultsFolder::open(folder).and_then(|results| results.record());
+    if record.is_ok_and(|r| matches!(r.state, RunState::Done | RunState::NoEquilibrium)) {
+        // Another run has come to its end since its record was looked at.
+        let folder = folder.to_owned();
+        return Err(ResultsError::Locked { folder }.into());
+    }
     let Some(checkpoint) = Checkpoint::newest(folder, scene)? else {
         clear_unfinished(folder)?;
         check_room(folder, false)?;
@@ -60,7 +90,7 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
             "nothing to go on from in {}: the run begins with load step 1\n",
             folder.display()
         ));
-        return begin(scene, folder, options);
+        return begin_locked(scene, folder, options, lock);
     };
     for note in &checkpoint.notes {
         say(&format!("warning: {note}\n"));
@@ -77,5 +107,9 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
     }
     let step = checkpoint.header.step;
     say(&format!("going on after load step {step}\n"));
-    Ok(Start { results, path })
+    Ok(Start {
+        results,
+        path,
+        lock,
+    })
 }

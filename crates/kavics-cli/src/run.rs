@@ -9,9 +9,10 @@ use kavics::loading::{LoadPath, Station};
 use kavics::measure::{Measures, Snapshot, Window, grain_stress, measures, moduli};
 use kavics::scene::Scene;
 use kavics::warning::WarningKind;
+use kavics_report::ComparedTable;
 use kavics_results::{
-    Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
-    clear_checkpoints,
+    Lock, Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
+    clear_checkpoints, clear_unpublished,
 };
 
 use crate::arguments::RunArguments;
@@ -19,18 +20,22 @@ use crate::failure::Failure;
 use crate::limits::{Estimate, bytes};
 use crate::progress::Progress;
 use crate::scene_file::say;
-use crate::{own_files, resume, scene_file, signals, summary, terminal};
+use crate::signals::Stop;
+use crate::{fault, own_files, resume, scene_file, summary, terminal};
+
+/// What a signal is answered by.
+const STOPPING: &str = "stopping after the present iteration; once more to end at once\n";
 
 pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     let usual = || scene_file::usual_folder(&arguments.scene.scene);
     let folder = arguments.output.clone().unwrap_or_else(usual);
+    let signals = Stop::wait(STOPPING)?;
+    Lock::check_free(&folder)?;
     if !arguments.resume {
         check_room(&folder, arguments.force)?;
     }
     let threads = scene_file::start_threads(arguments.threads)?;
-    let (mut scene, table) = scene_file::read(&arguments.scene, arguments.any_size)?;
-    check_apart(&folder, &scene_file::files_read(&arguments.scene, &scene))?;
-    scene.text = own_files::named(&scene.text, &scene.layers);
+    let (scene, table) = prepare(arguments, &folder)?;
     let began = Instant::now();
     if terminal::loudness() == terminal::Loudness::Verbose {
         terminal::say_more(&opening(&scene, threads));
@@ -39,7 +44,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         threads,
         replace: arguments.force,
     };
-    Estimate::of(&scene).check(arguments.any_size)?;
+    let told = signals.begin()?;
+    fault::name_results(&folder);
     let start = if arguments.resume {
         check_same(&folder, &scene)?;
         if let Some(ended) = resume::ended(&folder)? {
@@ -50,8 +56,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
     } else {
         resume::begin(&scene, &folder, options)?
     };
+    let _lock = start.lock;
     let mut results = start.results;
-    signals::name_checkpoint_in_a_panic(&folder);
     let mut follower = Follower {
         scene: &scene,
         window: Window::new(scene.window.clone(), scene.assembly.grains.len()),
@@ -59,7 +65,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         lines: JsonLines::new(arguments.json),
         apart: arguments.checkpoint,
     };
-    let path = start.path.stopped_by(signals::stop_flag()?);
+    let path = start.path.stopped_by(told);
     let (ended, lines) = (follower.follow(path)?, follower.lines);
     let (state, failure) = match ended {
         Ended::Stopped => return stop(results, &folder),
@@ -81,6 +87,18 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             folder,
         }),
     }
+}
+
+/// The scene as it will run, and the table that it is compared with.
+fn prepare(
+    arguments: &RunArguments,
+    folder: &Path,
+) -> Result<(Scene, Option<ComparedTable>), Failure> {
+    let (mut scene, table) = scene_file::read(&arguments.scene, arguments.any_size)?;
+    check_apart(folder, &scene_file::files_read(&arguments.scene, &scene))?;
+    scene.text = own_files::named(&scene.text, &scene.layers);
+    Estimate::of(&scene).check(arguments.any_size)?;
+    Ok((scene, table))
 }
 
 /// Writes what has not been written, and sums the run up.
@@ -170,16 +188,24 @@ impl Follower<'_, '_> {
 
 /// Ends a run that was told to stop: the tables hold all that was found, and it can go on.
 fn stop(results: Results<'_>, folder: &Path) -> Result<(), Failure> {
+    let mut warnings = results.warnings();
     let steps = results.finish(RunState::Stopped, None)?;
+    let last = steps.last().map_or(0, |row| row.step);
+    warnings.extend(RunState::Stopped.unfinished(last));
+    scene_file::show_warnings(&warnings);
     Err(Failure::Stopped {
-        last: steps.last().map_or(0, |row| row.step),
+        last,
         folder: folder.to_owned(),
     })
 }
 
 /// Nothing is left to do but what a run that was broken off at its very end may have left out.
 fn finished(folder: &Path) -> Result<(), Failure> {
-    clear_checkpoints(folder)?;
+    if folder.join("checkpoint").is_dir() {
+        let _lock = resume::lock(folder)?;
+        clear_checkpoints(folder)?;
+    }
+    clear_unpublished(folder)?;
     if folder.join("report.html").is_file() {
         return Ok(());
     }

@@ -1,28 +1,64 @@
-//! Signals from outside, and what is said where the program itself is wrong.
+//! Signals from outside.
 
-use std::panic::{set_hook, take_hook};
-use std::path::Path;
 use std::process::exit;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
-use crate::failure::Failure;
-use crate::scene_file::say;
+use crate::failure::{Failure, INTERRUPTED, STOPPED};
+use crate::terminal::say;
 
-/// Ended by a second signal, as shells count.
-const INTERRUPTED: i32 = 130;
+/// What an interrupt, a hang-up or a request to end comes to: the first is left to the task, once it has begun to
+/// write; a second one ends the program at once.
+#[derive(Debug)]
+pub struct Stop {
+    told: Arc<AtomicBool>,
+    begun: Arc<Mutex<bool>>,
+}
 
-/// A flag that the first interrupt, hang-up or request to end sets; the second one ends the program at once.
-pub fn stop_flag() -> Result<Arc<AtomicBool>, Failure> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            exit(INTERRUPTED);
+impl Stop {
+    /// Waits for signals from now on; `answer` is what the first one is answered by where the task has begun.
+    pub fn wait(answer: &'static str) -> Result<Self, Failure> {
+        let stop = Self {
+            told: Arc::default(),
+            begun: Arc::default(),
+        };
+        let (told, begun) = (Arc::clone(&stop.told), Arc::clone(&stop.begun));
+        ctrlc::set_handler(move || {
+            if told.swap(true, Ordering::Relaxed) {
+                exit(INTERRUPTED);
+            }
+            // In a thread of its own, as a stderr that nobody reads may keep it waiting. Where there is none the task
+            // finds the flag.
+            let begun = Arc::clone(&begun);
+            let _ = thread::Builder::new().spawn(move || first_signal(&begun, answer));
+        })?;
+        Ok(stop)
+    }
+
+    /// From now on the first signal is left to the task, which looks at the flag.
+    ///
+    /// # Errors
+    /// A signal that came before.
+    pub fn begin(&self) -> Result<Arc<AtomicBool>, Failure> {
+        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.told.load(Ordering::Relaxed) {
+            return Err(Failure::StoppedEarly);
         }
-        say("stopping after the present iteration; once more to end at once\n");
-    })?;
-    Ok(stop)
+        *begun = true;
+        Ok(Arc::clone(&self.told))
+    }
+}
+
+fn first_signal(begun: &Mutex<bool>, answer: &str) {
+    let begun = begun.lock().unwrap_or_else(PoisonError::into_inner);
+    if *begun {
+        say(answer);
+    } else {
+        // Nothing is lost, so that nothing is waited for. The lock keeps the task from beginning meanwhile.
+        say(&format!("{}\n", Failure::StoppedEarly));
+        exit(STOPPED);
+    }
 }
 
 /// A file beyond the limit of the process is an error like a full disk, not a signal. Threads begun later do the same.
@@ -35,18 +71,4 @@ pub fn let_large_files_fail() {
         // Where that cannot be had the signal ends the program, as it would have.
         let _ = signals.thread_block();
     }
-}
-
-/// After a panic, which is a mistake in kavics, what has been found is not lost.
-pub fn name_checkpoint_in_a_panic(folder: &Path) {
-    let (usual, folder) = (take_hook(), folder.to_owned());
-    set_hook(Box::new(move |panic| {
-        usual(panic);
-        say(&format!(
-            "this is a mistake in kavics, not in the scene\nthe load steps in {0} are valid; its last checkpoint is in {1}\n\
-             kavics run --resume goes on from there\n",
-            folder.display(),
-            folder.join("checkpoint").display()
-        ));
-    }));
 }

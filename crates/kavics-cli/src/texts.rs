@@ -4,10 +4,11 @@ use std::io::{Write, stdout};
 
 use clap::CommandFactory;
 use kavics_report::StepChoice;
+use kavics_results::ResultsFolder;
 
 use crate::arguments::{Arguments, CompletionsArguments, ManArguments, ReportArguments};
 use crate::failure::Failure;
-use crate::scene_file::say;
+use crate::scene_file::{say, show_warnings};
 
 pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let steps = arguments.steps.clone();
@@ -15,6 +16,9 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let output = arguments.output.as_deref();
     let path = kavics_report::write_steps(&arguments.results, output, &steps)?;
     say(&format!("report: {}\n", path.display()));
+    let folder = ResultsFolder::open(&arguments.results)?;
+    let last = folder.steps()?.len();
+    show_warnings(folder.record()?.state.unfinished(last).as_slice());
     Ok(())
 }
 

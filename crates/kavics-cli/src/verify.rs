@@ -3,6 +3,7 @@
 use std::env;
 use std::fmt::Write as _;
 use std::io::{Write, stdout};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,6 +13,7 @@ use rayon::prelude::*;
 use crate::arguments::VerifyArguments;
 use crate::failure::Failure;
 use crate::progress::time;
+use crate::signals::Stop;
 use crate::terminal::{self, COLUMNS, Loudness, say};
 
 /// Columns before the values of a quantity.
@@ -56,6 +58,9 @@ fn cases(arguments: &VerifyArguments) -> Result<Vec<Case>, Failure> {
 }
 
 fn findings(cases: &[Case]) -> Result<Vec<Finding>, Failure> {
+    // The room of the runs is cleared before the program ends, so that a signal is left to this task.
+    let stop = Stop::wait("stopping after the present cases; once more to end at once\n")?;
+    let told = stop.begin().map_err(|_| Failure::Interrupted)?;
     let verifier = Verifier::new(&env::current_exe()?)?;
     let bar = match terminal::loudness() {
         Loudness::Quiet => ProgressBar::hidden(),
@@ -64,7 +69,11 @@ fn findings(cases: &[Case]) -> Result<Vec<Finding>, Failure> {
     let style = ProgressStyle::with_template("case {pos}/{len} {bar:14} {msg}");
     bar.set_style(style.expect("a template that is known to be right"));
     let verified = cases.par_iter().map(|case| {
-        let findings = verifier.verify(*case)?;
+        let findings = verifier.verify(*case);
+        if told.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted);
+        }
+        let findings = findings?;
         bar.set_message(case.name);
         bar.inc(1);
         Ok(findings)

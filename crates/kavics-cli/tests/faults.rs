@@ -4,7 +4,7 @@
 mod broken_off;
 
 use std::fs;
-use std::os::unix::fs::{PermissionsExt, symlink};
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output};
 
@@ -65,19 +65,125 @@ fn a_limit_on_the_size_of_files_is_an_error_with_the_file() {
     }
 }
 
+/// Puts a link to a device that is full in the place of a file, whole as a file is replaced.
+fn fill_up(place: &Place, file: &Path) {
+    let aside = place.folder("aside");
+    symlink("/dev/full", &aside).expect("room on the disk");
+    fs::rename(&aside, file).expect("a folder");
+}
+
 #[test]
 fn a_device_that_is_full_is_an_error_and_what_was_found_stays() {
     let place = Place::with(SLIDING);
-    let child = place.run_to("full", 2);
-    let table = place.folder("full/events.parquet");
-    let aside = place.folder("aside");
-    symlink("/dev/full", &aside).expect("room on the disk");
-    fs::rename(&aside, &table).expect("a folder");
-    assert_eq!(ended(child), Some(4));
-    fs::remove_file(&table).expect("a link");
-    let results = ResultsFolder::open(&place.folder("full")).expect("results");
-    results.steps().expect("a table");
-    place.assert_ends_alike("full", &[]);
+    for name in [
+        "steps.parquet",
+        "events.parquet",
+        "actions.parquet",
+        "iterations.parquet",
+        "log.ndjson",
+        "grains/000006.parquet",
+        "contacts/000006.parquet",
+        "sides/000006.parquet",
+        "modes/000006.parquet",
+    ] {
+        let full = name.replace('/', "-");
+        let mut child = place.run_to(&full, 2);
+        let file = place.folder(&full).join(name);
+        fill_up(&place, &file);
+        drop(child.stdout.take());
+        let failed = child.wait_with_output().expect("a child");
+        let said = said(&failed);
+        assert_eq!(failed.status.code(), Some(4), "{name}: {said}");
+        assert!(
+            said.contains(name) && said.contains("No space left on device"),
+            "{name}: {said}"
+        );
+        fs::remove_file(&file).expect("a link");
+        let results = ResultsFolder::open(&place.folder(&full)).expect("results");
+        let record = results.record().expect("a record");
+        let unfinished = record.warnings.last().expect("a warning");
+        assert!(unfinished.ends_with("[run-unfinished]"), "{unfinished}");
+        place.assert_ends_alike(&full, &[]);
+    }
+}
+
+#[test]
+fn a_record_or_report_that_cannot_be_written_is_an_error() {
+    let place = Place::with(SLIDING);
+    for name in ["run.json", "report.html"] {
+        let mut child = place.run_to(name, 2);
+        let file = place.folder(name).join(name);
+        let before = fs::read(&file);
+        fill_up(&place, &file);
+        drop(child.stdout.take());
+        let failed = child.wait_with_output().expect("a child");
+        let said = said(&failed);
+        assert_eq!(failed.status.code(), Some(4), "{said}");
+        assert!(said.contains(name), "{said}");
+        fs::remove_file(&file).expect("a link");
+        if let Ok(before) = before {
+            fs::write(&file, before).expect("room on the disk");
+        }
+        place.assert_ends_alike(name, &[]);
+    }
+}
+
+/// Runs a scene on a disk of so many bytes, which is enlarged before it goes on; what comes of it is laid into `copy`. The
+/// disk is in memory, and mounted for this shell alone, so that it is gone with it.
+const SMALL_DISK: &str = r#"
+mount -t tmpfs -o size="$SIZE" none "$DISK" || exit 99
+"$KAVICS" run "$SCENE" -o "$DISK/results" --checkpoint 0 2> "$COPY.said"
+echo $? > "$COPY.status"
+mount -o remount,size=256m "$DISK" || exit 99
+"$KAVICS" run "$SCENE" -o "$DISK/results" --resume 2>> "$COPY.said" || exit 98
+cp -r "$DISK/results" "$COPY"
+"#;
+
+fn on_a_small_disk(place: &Place, copy: &str, size: &str) -> Output {
+    let mut shell = Command::new("unshare");
+    shell.args(["--map-root-user", "--mount", "sh", "-c", SMALL_DISK]);
+    shell.env("KAVICS", assert_cmd::cargo::cargo_bin("kavics"));
+    shell.env("SCENE", place.folder("scene.toml"));
+    shell.env("DISK", place.folder("disk"));
+    shell.env("COPY", place.folder(copy)).env("SIZE", size);
+    shell.output().expect("a shell")
+}
+
+#[test]
+fn a_disk_that_is_full_is_an_error_wherever_it_comes() {
+    let mut may = Command::new("unshare");
+    may.args(["--map-root-user", "--mount", "true"]);
+    if !may.status().is_ok_and(|status| status.success()) {
+        eprintln!("no disk can be mounted here, and none was filled");
+        return;
+    }
+    let place = Place::with(EVENTS);
+    fs::create_dir(place.folder("disk")).expect("room on the disk");
+    for (size, fits) in [
+        ("16k", false),
+        ("128k", false),
+        ("512k", false),
+        ("900k", false),
+        ("64m", true),
+    ] {
+        let done = on_a_small_disk(&place, size, size);
+        assert!(done.status.success(), "{size}: {}", said(&done));
+        let text = |ending: &str| fs::read_to_string(place.folder(&format!("{size}.{ending}")));
+        let status = text("status").expect("a status");
+        let said = text("said").expect("what was said");
+        assert_eq!(
+            status.trim(),
+            if fits { "0" } else { "4" },
+            "{size}: {said}"
+        );
+        assert_eq!(
+            said.contains("No space left on device"),
+            !fits,
+            "{size}: {said}"
+        );
+        assert!(!said.contains("mistake in kavics"), "{size}: {said}");
+        place.assert_alike(size);
+    }
 }
 
 #[test]
@@ -104,28 +210,12 @@ fn a_folder_that_takes_no_files_is_an_error() {
     );
 }
 
-#[test]
-fn a_folder_that_becomes_read_only_is_an_error() {
-    let place = Place::with(SLIDING);
-    stop(place.run_to("shut", 2));
-    let folder = place.folder("shut");
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o555)).expect("a folder of ours");
-    if fs::write(folder.join(".run.json.try"), "").is_ok() {
-        // Whoever may write everywhere, as root may, cannot be refused.
-        fs::remove_file(folder.join(".run.json.try")).expect("a file");
-    } else {
-        let failed = place.run("shut", &["--resume"]);
-        assert_eq!(failed.status.code(), Some(4), "{}", said(&failed));
-        assert_readable(&folder, 2);
-    }
-    fs::set_permissions(&folder, fs::Permissions::from_mode(0o755)).expect("a folder of ours");
-    place.assert_ends_alike("shut", &[]);
-}
-
 /// The checkpoints of a folder, the oldest first.
 fn checkpoints(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder.join("checkpoint")).expect("a folder");
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    let paths = entries.flatten().map(|entry| entry.path());
+    let is_checkpoint = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "arrow");
+    let mut paths: Vec<PathBuf> = paths.filter(is_checkpoint).collect();
     paths.sort();
     paths
 }

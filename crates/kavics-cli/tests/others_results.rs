@@ -108,6 +108,30 @@ fn a_newer_version_wrote_the_tables() {
     all_say(&EVERY, place.path(), 4, "tables of version 2");
 }
 
+/// Of versions before the first there is none; they had no `packing` in their record.
+#[test]
+fn an_older_version_wrote_the_tables() {
+    let place = finished(SCENE);
+    change(place.path(), "run.json", |bytes| {
+        let text = String::from_utf8(bytes).expect("text");
+        let text = text.replace("\"schema_version\": 1", "\"schema_version\": 0");
+        let packing = text.find(",\n  \"packing\"").expect("a packing");
+        format!("{}\n}}\n", &text[..packing]).into_bytes()
+    });
+    let [measure, report, draw, export] = EVERY;
+    for task in [measure, report] {
+        let done = kavics(place.path(), task);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "{task:?}: {said}");
+    }
+    all_say(
+        &[draw, export],
+        place.path(),
+        4,
+        "run.json keeps no container",
+    );
+}
+
 #[test]
 fn the_record_is_no_json() {
     let place = finished(SCENE);
@@ -170,19 +194,6 @@ fn a_table_with_a_turned_bit_gives_no_trace() {
             !String::from_utf8_lossy(&done.stderr).contains("panicked"),
             "byte {at}"
         );
-    }
-}
-
-#[cfg(unix)]
-#[test]
-fn the_folder_may_not_be_read() {
-    use std::os::unix::fs::PermissionsExt;
-    let place = finished(SCENE);
-    let table = place.path().join("heap.results/steps.parquet");
-    fs::set_permissions(&table, fs::Permissions::from_mode(0o000)).expect("permissions");
-    // Who may read everything has nothing to be told.
-    if fs::File::open(&table).is_err() {
-        all_say(&WHOLE, place.path(), 4, "Permission denied");
     }
 }
 

@@ -491,5 +491,8 @@ fn measuring_a_run_that_is_not_finished_says_so() {
     assert_eq!(status(&output), 0);
     let said = text(&output.stderr);
     let words: Vec<&str> = said.split_whitespace().collect();
-    assert!(words.join(" ").contains("ends with load step 3"), "{said}");
+    assert!(
+        words.join(" ").contains("tables end with load step 3"),
+        "{said}"
+    );
 }

@@ -4,10 +4,14 @@
 mod broken_off;
 
 use std::fs;
-use std::process::{Child, ExitStatus};
+use std::io::{BufRead, BufReader};
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
+use std::time::{Duration, Instant};
 
-use broken_off::{EVENTS, Place, SLIDING, SOFTENING, said, wait_for};
+use broken_off::{EVENTS, Place, Random, SLIDING, SOFTENING, said, wait_for};
 use kavics_results::{ResultsFolder, RunState};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
@@ -57,16 +61,165 @@ fn a_run_that_is_stopped_again_and_again_comes_to_the_same_end() {
     place.assert_ends_alike("stopped", &[]);
 }
 
+/// Puts a pipe that nobody reads in the place of a file: who writes to it waits for ever, as for a disk that is gone.
+fn block(place: &Place, file: &Path) {
+    let aside = place.folder("aside");
+    let made = Command::new("mkfifo").arg(&aside).status();
+    assert!(made.expect("mkfifo").success());
+    fs::rename(&aside, file).expect("a folder");
+}
+
+/// Waits until the run has said something with these words.
+fn wait_for_words(child: &mut Child, words: &str) {
+    let told = BufReader::new(child.stderr.as_mut().expect("a pipe"));
+    let mut lines = told.lines().map_while(Result::ok);
+    assert!(
+        lines.any(|line| line.contains(words)),
+        "nothing says {words}"
+    );
+}
+
 #[test]
-fn a_second_signal_ends_a_run_at_once() {
-    let place = Place::of("bench/fracture-10k.toml");
-    let child = place.spawn("stopped", &[]);
-    wait_for(&place.folder("stopped/grains/000000.parquet"));
+fn a_second_signal_ends_a_run_at_once_whatever_it_is() {
+    let place = Place::with(SLIDING);
+    for (number, [first, second]) in [
+        [Signal::SIGTERM, Signal::SIGTERM],
+        [Signal::SIGINT, Signal::SIGINT],
+        [Signal::SIGHUP, Signal::SIGHUP],
+        [Signal::SIGTERM, Signal::SIGINT],
+        [Signal::SIGINT, Signal::SIGTERM],
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("stopped-{number}");
+        let mut child = place.run_to(&name, 2);
+        let log = place.folder(&name).join("log.ndjson");
+        block(&place, &log);
+        signal(&child, first);
+        wait_for_words(&mut child, "once more to end at once");
+        signal(&child, second);
+        assert_eq!(ended(child).code(), Some(130), "{first}, {second}");
+        fs::remove_file(log).expect("a pipe");
+        place.assert_ends_alike(&name, &[]);
+    }
+}
+
+/// Waits until a process listens to signals.
+#[cfg(target_os = "linux")]
+fn wait_for_ears(child: &Child) {
+    let threads = Path::new("/proc").join(child.id().to_string()).join("task");
+    let listens = || {
+        let threads = fs::read_dir(&threads).expect("a running child").flatten();
+        let names =
+            threads.filter_map(|thread| fs::read_to_string(thread.path().join("comm")).ok());
+        names.into_iter().any(|name| name.trim() == "ctrl-c")
+    };
+    while !listens() {
+        sleep(Duration::from_millis(2));
+    }
+}
+
+/// A million grains take seconds to place.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_before_anything_is_written_ends_a_run_at_once() {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/million.toml");
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for by in [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP] {
+        let child = Command::new(env!("CARGO_BIN_EXE_kavics"))
+            .args(["run", "--any-size", "-o", "results"])
+            .arg(&scene)
+            .current_dir(room.path())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the command runs");
+        wait_for_ears(&child);
+        signal(&child, by);
+        let done = child.wait_with_output().expect("a child");
+        let said = said(&done);
+        assert_eq!(done.status.code(), Some(75), "{by}: {said}");
+        assert!(said.contains("before anything was written"), "{by}: {said}");
+        assert!(!room.path().join("results").exists());
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_verification_that_is_stopped_leaves_nothing_behind() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    for by in [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP] {
+        let child = Command::new(env!("CARGO_BIN_EXE_kavics"))
+            .arg("verify")
+            .env("TMPDIR", room.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the command runs");
+        wait_for_ears(&child);
+        signal(&child, by);
+        let done = child.wait_with_output().expect("a child");
+        assert_eq!(done.status.code(), Some(130), "{by}: {}", said(&done));
+        let left = fs::read_dir(room.path()).expect("a folder").count();
+        assert_eq!(left, 0, "{by}");
+    }
+}
+
+/// Tasks that write one file end by a signal as any program does, and the file is the old one or the new one, whole.
+#[test]
+fn a_file_that_is_being_replaced_when_a_signal_comes_is_whole() {
+    let place = Place::of("dropped-1000.toml");
+    let pack: &[&str] = &["pack", "scene.toml", "-o", "pack.csv"];
+    let measure: &[&str] = &["measure", "whole", "-o", "steps.csv"];
+    let report: &[&str] = &["report", "whole", "-o", "page.html"];
+    let mut random = Random(11);
+    for task in [pack, measure, report] {
+        let file = place.folder(task[task.len() - 1]);
+        let spawn = || {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_kavics"));
+            command.args(task).current_dir(place.folder(""));
+            command
+                .stderr(Stdio::null())
+                .spawn()
+                .expect("the command runs")
+        };
+        let start = Instant::now();
+        assert!(spawn().wait().expect("a child").success());
+        let (took, new) = (start.elapsed(), fs::read(&file).expect("a file"));
+        for _ in 0..8 {
+            fs::write(&file, "old").expect("room on the disk");
+            let child = spawn();
+            sleep(took.mul_f64(random.next()));
+            let _ = kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM);
+            let status = ended(child);
+            assert!(
+                status.success() || status.signal() == Some(Signal::SIGTERM as i32),
+                "{task:?}: {status}"
+            );
+            let found = fs::read(&file).expect("a file");
+            assert!(found == b"old" || found == new, "{task:?}");
+        }
+    }
+}
+
+#[test]
+fn a_run_that_was_stopped_is_said_to_be_unfinished_everywhere() {
+    let place = Place::with(SLIDING);
+    let child = place.run_to("stopped", 2);
     signal(&child, Signal::SIGTERM);
-    signal(&child, Signal::SIGINT);
-    let status = ended(child).code();
-    // The first one may have been enough.
-    assert!(status == Some(130) || status == Some(75), "{status:?}");
+    let done = child.wait_with_output().expect("a child");
+    let mark = "[run-unfinished]";
+    assert!(said(&done).contains(mark), "{}", said(&done));
+    let record = fs::read_to_string(place.folder("stopped/run.json")).expect("a record");
+    assert!(record.contains(mark), "{record}");
+    for task in ["measure", "report"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_kavics"));
+        command.arg(task).arg(place.folder("stopped"));
+        let done = command.output().expect("the command runs");
+        assert!(said(&done).contains(mark), "{task}: {}", said(&done));
+    }
+    let page = fs::read_to_string(place.folder("stopped/report.html")).expect("a report");
+    assert!(page.contains(mark));
     place.assert_ends_alike("stopped", &[]);
 }
 
@@ -93,6 +246,22 @@ fn results_that_are_finished_stay_as_they_are() {
         said(&again),
         format!("{} is finished\n", place.folder("whole").display())
     );
+}
+
+#[test]
+fn what_a_killed_report_left_is_taken_away() {
+    let place = Place::with(SLIDING);
+    let folder = place.folder("whole");
+    let before = broken_off::files(&folder);
+    fs::create_dir(folder.join("checkpoint")).expect("room on the disk");
+    for name in ["checkpoint/lock", ".report.html.Ab3xYz", "notes.txt"] {
+        fs::write(folder.join(name), "").expect("room on the disk");
+    }
+    assert_eq!(place.run("whole", &["--resume"]).status.code(), Some(0));
+    // What does not belong to the run stays.
+    fs::remove_file(folder.join("notes.txt")).expect("a file");
+    assert!(broken_off::files(&folder) == before);
+    assert!(!folder.join("checkpoint").exists());
 }
 
 #[test]

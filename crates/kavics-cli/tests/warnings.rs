@@ -67,6 +67,52 @@ force = { y = -0.01 }
 factors = [1.0]
 "#;
 
+/// Sand with little shear stiffness and much friction, pressed at once: its contacts open, close, slide and stick hundreds of
+/// times before they settle.
+const SAND: &str = r#"
+[box]
+width = 12.0
+height = "fit"
+
+[grains.dropped]
+count = 40
+radius = { from = 0.7, to = 1.0 }
+
+[contact.sand.cohesionless]
+stiffness.layer = { normal = 1000.0, shear = 50.0 }
+friction = 2.0
+
+[side.left]
+contact = "sand"
+[side.right]
+contact = "sand"
+free = ["x"]
+[side.bottom]
+contact = "sand"
+[side.top]
+contact = "sand"
+reach = 1.0
+free = ["y"]
+
+[[load]]
+name = "side"
+side = "right"
+force = { x = -1.0 }
+[[load]]
+name = "lid"
+side = "top"
+force = { y = -1.0 }
+
+[equilibrium]
+iteration = "tangent"
+
+[[stage]]
+factors = [1.0]
+"#;
+
+/// Of packings of this sand that settle slowly.
+const SEEDS: [u32; 2] = [5136, 81];
+
 /// What the run of a scene said.
 struct Said {
     terminal: String,
@@ -168,6 +214,16 @@ fn load_uncovered() {
     run(THREE, edge, &set).expect(&[WarningKind::LoadUncovered]);
 }
 
+/// How often contacts change their phase hangs on the last digits, which differ between processors: one of some packings is enough.
+#[test]
+fn many_iterations() {
+    let said = SEEDS.map(|seed| run(SAND, "", &[&format!("seed={seed}")]));
+    let mark = format!("[{}]", WarningKind::ManyIterations.name());
+    let provoked = said.iter().find(|said| said.terminal.contains(&mark));
+    let provoked = provoked.expect("a packing whose contacts are slow to settle");
+    provoked.expect(&[WarningKind::ManyIterations]);
+}
+
 #[test]
 fn no_modes() {
     let modes = "[measure]\nstability = 1\n[equilibrium]\nbreakage = \"event-driven\"\n";
@@ -248,12 +304,6 @@ fn run_unfinished() {
     assert!(said.contains("[run-unfinished]"), "{said}");
 }
 
-/// The iteration that comes near its limit is provoked beside `loading::advance`, where the limit is known.
-const ELSEWHERE: [(&str, &str); 1] = [(
-    "ManyIterations",
-    "the_iteration_that_came_nearest_to_its_limit_is_told",
-)];
-
 #[test]
 fn every_kind_is_provoked_and_explained() {
     let tests = include_str!("warnings.rs");
@@ -264,11 +314,8 @@ fn every_kind_is_provoked_and_explained() {
         let name = format!("{kind:?}");
         let here = tests.contains(&format!("WarningKind::{name}"))
             || tests.contains(&format!("[{}]", kind.name()));
-        let elsewhere = ELSEWHERE.iter().any(|(known, _)| *known == name);
-        assert!(here || elsewhere, "nothing provokes {}", kind.name());
+        assert!(here, "nothing provokes {}", kind.name());
     }
-    let advance = include_str!("../../kavics/src/loading/advance.rs");
-    assert!(ELSEWHERE.iter().all(|(_, test)| advance.contains(test)));
 }
 
 #[test]

@@ -28,8 +28,9 @@ pub const CHECKPOINT_VERSION: u32 = 1;
 /// Generations that are kept.
 const GENERATIONS: usize = 2;
 
-/// What a checkpoint is of.
+/// What a checkpoint is of. What another version leaves out is empty, so that its number is looked at first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct CheckpointHeader {
     /// Version of what stands in it.
     pub checkpoint_version: u32,
@@ -110,8 +111,12 @@ impl Checkpoint {
 /// # Errors
 /// A scene that differs from the one that ran, with the first line that does.
 pub fn check_same(folder: &Path, scene: &Scene) -> Result<(), ResultsError> {
-    let Ok(ran) = ResultsFolder::open(folder).and_then(|results| results.scene()) else {
-        return Ok(());
+    let ran = match ResultsFolder::open(folder).and_then(|results| results.scene()) {
+        Ok(ran) => ran,
+        Err(refused @ ResultsError::Unreadable { .. }) if !refused.is_absence() => {
+            return Err(refused);
+        }
+        Err(_) => return Ok(()),
     };
     if ran == scene.text {
         return Ok(());

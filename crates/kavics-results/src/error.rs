@@ -1,5 +1,6 @@
 //! What can go wrong with a results folder.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use parquet::errors::ParquetError;
@@ -35,6 +36,12 @@ pub enum ResultsError {
         folder: PathBuf,
         /// What the run needs.
         path: PathBuf,
+    },
+    /// Another run writes to the folder.
+    #[error("{} is being written by another run; wait for its end, or name another folder by -o", folder.display())]
+    Locked {
+        /// The folder.
+        folder: PathBuf,
     },
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
@@ -196,6 +203,11 @@ pub enum ResultsError {
 }
 
 impl ResultsError {
+    /// Whether a file could not be read since it is not there.
+    pub(crate) fn is_absence(&self) -> bool {
+        matches!(self, Self::Unreadable { source, .. } if source.kind() == ErrorKind::NotFound)
+    }
+
     /// What is wrong with a file, for a message that names the file itself.
     pub(crate) fn without_path(&self) -> String {
         match self {

@@ -1,6 +1,7 @@
 //! Reading a results folder back, by column name.
 
 use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -268,7 +269,7 @@ impl ResultsFolder {
     /// # Errors
     /// A folder without `run.json`.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
-        if path.join("run.json").is_file() {
+        if has_record(path)? {
             return Ok(Self {
                 path: path.to_owned(),
             });
@@ -498,6 +499,21 @@ impl ResultsFolder {
     fn text(&self, name: &str) -> Result<String, ResultsError> {
         let path = self.path.join(name);
         fs::read_to_string(&path).map_err(ResultsError::unreadable(&path))
+    }
+}
+
+/// Whether there is a `run.json` in a folder.
+///
+/// # Errors
+/// A folder that may not be looked into.
+pub(crate) fn has_record(folder: &Path) -> Result<bool, ResultsError> {
+    let path = folder.join("run.json");
+    match fs::metadata(&path) {
+        Ok(found) => Ok(found.is_file()),
+        Err(error) if error.kind() == ErrorKind::PermissionDenied => {
+            Err(ResultsError::unreadable(&path)(error))
+        }
+        Err(_) => Ok(false),
     }
 }
 

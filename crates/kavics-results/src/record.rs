@@ -1,5 +1,6 @@
 //! `run.json`: what ran, and how it ended.
 
+use kavics::warning::WarningKind;
 use serde::{Deserialize, Serialize};
 
 use crate::packing_record::PackingRecord;
@@ -31,6 +32,17 @@ impl RunState {
             Self::NoEquilibrium => "no equilibrium",
             Self::Stopped => "stopped",
         }
+    }
+
+    /// The warning that load steps after `last` are missing, where the run has not ended.
+    pub fn unfinished(self, last: usize) -> Option<String> {
+        let how = match self {
+            Self::Done | Self::NoEquilibrium => return None,
+            Self::Running => "is under way or was broken off",
+            Self::Stopped => "was stopped, and run --resume goes on",
+        };
+        let what = format!("the run {how}; its tables end with load step {last}");
+        Some(WarningKind::RunUnfinished.says(what))
     }
 }
 

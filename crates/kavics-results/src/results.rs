@@ -468,8 +468,11 @@ impl<'a> Results<'a> {
     }
 
     fn write_record(&self) -> Result<(), ResultsError> {
+        let last = self.steps.last().map_or(0, |row| row.step);
+        let mut warnings = self.warnings();
+        warnings.extend(self.record.state.unfinished(last));
         let record = RunRecord {
-            warnings: self.warnings(),
+            warnings,
             ..self.record.clone()
         };
         let mut record = serde_json::to_string_pretty(&record).expect("words are JSON");

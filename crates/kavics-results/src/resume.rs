@@ -42,7 +42,6 @@ impl<'a> Results<'a> {
         checkpoint: &Checkpoint,
     ) -> Result<Self, ResultsError> {
         let mut results = Self::new(folder, scene, options);
-        clear_leftovers(folder, |step| results.is_recorded(step))?;
         let before = |table, names: Vec<String>| earlier(folder, checkpoint, table, &names);
         results.before = Before {
             steps: before("steps", names(&step_columns()))?,
@@ -66,6 +65,8 @@ impl<'a> Results<'a> {
         results.log = Log::resume(log, checkpoint.header.step);
         results.make_folders()?;
         results.write_growing()?;
+        // Last, so that nothing is taken away from a folder in which nothing can be written.
+        clear_leftovers(folder, |step| results.is_recorded(step))?;
         Ok(results)
     }
 

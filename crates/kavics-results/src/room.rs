@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::ResultsError;
 use crate::checkpoint::{CHECKPOINT, is_generation};
+use crate::folder::has_record;
+use crate::lock::LOCK;
 
 /// Folders of tables, a file a recorded load step.
 pub(crate) const RECORDED: [&str; 3] = ["grains", "contacts", "sides"];
@@ -41,7 +43,7 @@ pub fn check_room(folder: &Path, replace: bool) -> Result<(), ResultsError> {
     if is_empty(folder) {
         return Ok(());
     }
-    if !folder.join("run.json").is_file() {
+    if !has_record(folder)? {
         return Err(ResultsError::NotResults {
             folder: folder.to_owned(),
         });
@@ -78,11 +80,11 @@ pub fn check_apart(folder: &Path, read: &[PathBuf]) -> Result<(), ResultsError> 
     }
 }
 
-/// Takes away what a run left that was broken off before it wrote `run.json`, or with nothing to go on from.
+/// Whether a run may go on in `folder`: it is not there, or holds files of a run and nothing else. Nothing is touched.
 ///
 /// # Errors
-/// A folder that holds anything else; files that cannot be removed.
-pub fn clear_unfinished(folder: &Path) -> Result<(), ResultsError> {
+/// A folder that holds anything else, or is a file.
+pub fn check_own(folder: &Path) -> Result<(), ResultsError> {
     if is_empty(folder) {
         return Ok(());
     }
@@ -94,7 +96,19 @@ pub fn clear_unfinished(folder: &Path) -> Result<(), ResultsError> {
         }
         other => other,
     };
-    remove(files_of_a_run(folder).map_err(not_results)?)?;
+    files_of_a_run(folder).map_err(not_results).map(|_| ())
+}
+
+/// Takes away what a run left that was broken off before it wrote `run.json`, or with nothing to go on from.
+///
+/// # Errors
+/// A folder that holds anything else; files that cannot be removed.
+pub fn clear_unfinished(folder: &Path) -> Result<(), ResultsError> {
+    check_own(folder)?;
+    if is_empty(folder) {
+        return Ok(());
+    }
+    remove(files_of_a_run(folder)?)?;
     for name in RECORDED.iter().chain(&ASKED_FOR).chain([&CHECKPOINT]) {
         // What is not there need not go.
         let _ = fs::remove_dir(folder.join(name));
@@ -129,6 +143,20 @@ pub(crate) fn clear_leftovers(
     )
 }
 
+/// Takes away what is left in the folder itself of files that were not published: a run that has ended, and was killed
+/// while it wrote its report, leaves no more than that.
+///
+/// # Errors
+/// Files that cannot be removed.
+pub fn clear_unpublished(folder: &Path) -> Result<(), ResultsError> {
+    let is_left = |entry: &DirEntry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        name.starts_with('.') && is_file_of_a_run(&name)
+    };
+    let left = entries(folder)?.into_iter().filter(is_left);
+    remove(left.map(|entry| entry.path()).collect())
+}
+
 fn remove(mut files: Vec<PathBuf>) -> Result<(), ResultsError> {
     // Without run.json the rest would be taken for something else, so it goes last.
     files.sort_by_key(|path| path.ends_with("run.json"));
@@ -138,14 +166,20 @@ fn remove(mut files: Vec<PathBuf>) -> Result<(), ResultsError> {
     Ok(())
 }
 
+/// Whether there is nothing in a folder but what is held by the run that is to write there.
 fn is_empty(folder: &Path) -> bool {
-    match fs::read_dir(folder) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(_) => fs::symlink_metadata(folder).is_err(),
-    }
+    let only = |folder: &Path, may_be: &dyn Fn(&DirEntry) -> bool| {
+        let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+        entries.map(|entries| entries.iter().all(may_be))
+    };
+    let is_lock = |entry: &DirEntry| entry.file_name() == LOCK;
+    let holds_a_lock = |entry: &DirEntry| {
+        entry.file_name() == CHECKPOINT && only(&entry.path(), &is_lock).unwrap_or(false)
+    };
+    only(folder, &holds_a_lock).unwrap_or_else(|_| fs::symlink_metadata(folder).is_err())
 }
 
-/// All files in `folder`, where all are of a run.
+/// All files in `folder` but its lock, where all are of a run.
 fn files_of_a_run(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
     let mut files = Vec::new();
     for entry in entries(folder)? {
@@ -162,6 +196,9 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
         if let Some(is_known) = is_known.filter(|_| is_folder) {
             for table in entries(&entry.path())? {
                 let name = table.file_name().to_string_lossy().into_owned();
+                if name == LOCK && entry.file_name() == CHECKPOINT {
+                    continue;
+                }
                 take(folder, &table, is_known(&name), &mut files)?;
             }
         } else {

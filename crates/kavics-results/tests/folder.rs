@@ -402,3 +402,58 @@ fn a_link_stays_and_what_is_no_file_is_not_replaced() {
     let kind = fs::metadata(&socket).expect("a socket").file_type();
     assert!(kind.is_socket());
 }
+
+/// Writes a table again without some of its columns, as a version that did not know them would have.
+fn leave_out(path: &std::path::Path, columns: &[&str]) {
+    let table = Columns::read(path).expect("a table");
+    let fields = table.schema().fields().iter().enumerate();
+    let kept: Vec<usize> = fields
+        .filter(|(_, field)| !columns.contains(&field.name().as_str()))
+        .map(|(index, _)| index)
+        .collect();
+    let batch = table.batches()[0].project(&kept).expect("columns");
+    let file = std::fs::File::create(path).expect("room on the disk");
+    let writer = parquet::arrow::ArrowWriter::try_new(file, batch.schema(), None);
+    let mut writer = writer.expect("a writer");
+    writer.write(&batch).expect("room on the disk");
+    writer.close().expect("room on the disk");
+}
+
+#[test]
+fn tables_that_lack_later_columns_are_read() {
+    let place = place();
+    let path = place.path().join("block.results");
+    block::write(&path, &block::scene(7, 5));
+    let folder = ResultsFolder::open(&path).expect("results");
+    let later = ["lowest_eigenvalue", "second_order_work", "shear_modulus"];
+    leave_out(&path.join("steps.parquet"), &later);
+    for table in ["grains/000000.parquet", "grains/000005.parquet"] {
+        leave_out(&path.join(table), &["window"]);
+    }
+    assert_eq!(
+        folder.step_rows().expect("rows").len(),
+        block::FACTORS.len() - 1
+    );
+    let grains = folder.grains(5).expect("a table");
+    assert!(grains.numbers("ux").is_ok());
+    let lacking = grains.integers("window").expect_err("no such column");
+    assert!(
+        lacking
+            .to_string()
+            .contains("no column is called \"window\"")
+    );
+}
+
+#[test]
+fn a_column_that_is_needed_and_lacking_is_named_with_its_file() {
+    let place = place();
+    let path = place.path().join("block.results");
+    block::write(&path, &block::scene(7, 5));
+    leave_out(&path.join("steps.parquet"), &["load_factor"]);
+    let folder = ResultsFolder::open(&path).expect("results");
+    let lacking = folder.step_rows().expect_err("no such column").to_string();
+    assert!(
+        lacking.contains("steps.parquet") && lacking.contains("\"load_factor\""),
+        "{lacking}"
+    );
+}

@@ -174,7 +174,7 @@ impl Place {
 
     pub fn spawn(&self, name: &str, arguments: &[&str]) -> Child {
         let mut command = self.command(name, arguments);
-        command.stdout(Stdio::piped()).stderr(Stdio::null());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
         command.spawn().expect("the command runs")
     }
 

@@ -257,7 +257,13 @@ fn has_checkpoint(place: &Path) -> bool {
     let folders = fs::read_dir(place).expect("the place");
     folders
         .map(|entry| entry.expect("an entry").path().join("checkpoint"))
-        .any(|folder| fs::read_dir(folder).is_ok_and(|mut files| files.next().is_some()))
+        .filter_map(|folder| fs::read_dir(folder).ok())
+        .flat_map(Iterator::flatten)
+        .any(|file| {
+            file.path()
+                .extension()
+                .is_some_and(|ending| ending == "arrow")
+        })
 }
 
 fn interrupt(child: &Child) {
