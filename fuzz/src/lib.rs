@@ -7,6 +7,7 @@ mod broken;
 mod lists;
 mod numbers;
 mod packs;
+mod patience;
 mod scenes;
 
 pub use broken::Broken;

@@ -8,6 +8,8 @@ use kavics::ids::{PerGrain, PerSide};
 use kavics::measure::{Snapshot, Window, cracks, measures, void_cells};
 use kavics::scene::Scene;
 
+use crate::patience::stop;
+
 /// More grains take too long to place, again and again.
 pub const MOST_PLACED: f64 = 300.0;
 /// More grains take too long to be loaded.
@@ -20,7 +22,7 @@ pub fn first_load_steps(scene: &Scene) {
         return;
     }
     let window = Window::new(scene.window.clone(), assembly.grains.len());
-    for equilibrium in scene.load_path().take(2) {
+    for equilibrium in scene.load_path().stopped_by(stop()).take(2) {
         let Ok(equilibrium) = equilibrium else {
             return;
         };

@@ -136,9 +136,9 @@ pub struct RunArguments {
     /// Go on with results that were broken off or stopped, from their last checkpoint
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Least time between two checkpoints in seconds; 0: after every load step
-    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds, overrides_with = "checkpoint")]
-    pub checkpoint: Duration,
+    /// Least time between two checkpoints in seconds; 0: after every load step; when absent 2, and less in the first minute
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, overrides_with = "checkpoint")]
+    pub checkpoint: Option<Duration>,
     /// One JSON object per load step on stdout
     #[arg(long)]
     pub json: bool,

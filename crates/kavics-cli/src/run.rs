@@ -144,8 +144,8 @@ struct Follower<'r, 'a> {
     window: Window,
     results: &'r mut Results<'a>,
     lines: JsonLines,
-    /// Least time between two checkpoints.
-    apart: Duration,
+    /// Least time between two checkpoints, where it was given.
+    apart: Option<Duration>,
 }
 
 impl Follower<'_, '_> {

@@ -59,8 +59,13 @@ impl Actions {
             loads: vec![Vec::new(); count],
             moves: vec![Vec::new(); count],
         };
+        let mut loads = vec![Vec::new(); count];
         for applied in &program.loads {
-            actions.loads[applied.action].extend(load_parts(applied.body, applied.load));
+            loads[applied.action].push((applied.body, applied.load));
+        }
+        for (parts, loads) in actions.loads.iter_mut().zip(loads) {
+            let together = together(loads).into_iter();
+            parts.extend(together.flat_map(|(body, load)| load_parts(body, load)));
         }
         for moved in &program.prescribed {
             actions.moves[moved.action].push(Part {
@@ -114,15 +119,36 @@ impl Actions {
         let factor = self.factors[action];
         let (loads, moves) = (&self.loads[action], &self.moves[action]);
         if !loads.is_empty() {
-            let whole: f64 = loads.iter().map(|part| part.size.abs()).sum();
+            let whole: f64 = sizes(loads).sum();
             let work = |part: &Part| part.size * displaced(equilibrium, *part);
             return [ratio(loads.iter().map(work).sum(), whole), factor * whole];
         }
-        let whole: f64 = moves.iter().map(|part| part.size.abs()).sum();
-        let mean = ratio(whole, moves.len() as f64);
+        let mean = ratio(sizes(moves).sum(), sizes(moves).count() as f64);
         let work = |part: &Part| part.size * reaction(equilibrium, *part);
         [factor * mean, ratio(moves.iter().map(work).sum(), mean)]
     }
+}
+
+/// The size of an action on each body: the length of a vector, whatever the axes.
+fn sizes(parts: &[Part]) -> impl Iterator<Item = f64> {
+    let of_bodies = parts.chunk_by(|a, b| a.body == b.body);
+    of_bodies.map(|parts| {
+        let squares = parts.iter().map(|part| part.size * part.size);
+        squares.sum::<f64>().sqrt()
+    })
+}
+
+/// One load a body.
+fn together(mut loads: Vec<(BodyId, Load)>) -> Vec<(BodyId, Load)> {
+    loads.sort_by_key(|(body, _)| *body);
+    loads.dedup_by(|next, kept| {
+        let is_same = next.0 == kept.0;
+        if is_same {
+            kept.1 += next.1;
+        }
+        is_same
+    });
+    loads
 }
 
 fn load_parts(body: BodyId, load: Load) -> impl Iterator<Item = Part> {

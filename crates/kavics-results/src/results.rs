@@ -86,9 +86,10 @@ pub(crate) fn rows(before: Option<&RecordBatch>) -> usize {
     before.map_or(0, RecordBatch::num_rows)
 }
 
-/// When a checkpoint was written last, and what it cost.
+/// When the run began or went on, when a checkpoint was written last, and what it cost.
 #[derive(Debug)]
 pub(crate) struct Checkpoints {
+    pub began: Instant,
     pub written: Instant,
     pub cost: Duration,
 }
@@ -151,6 +152,7 @@ impl<'a> Results<'a> {
             written: Instant::now(),
             before: Before::default(),
             checkpoints: Checkpoints {
+                began: Instant::now(),
                 written: Instant::now(),
                 cost: Duration::ZERO,
             },

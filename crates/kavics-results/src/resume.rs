@@ -22,8 +22,13 @@ use crate::room::clear_leftovers;
 use crate::steps::{iterate_columns, rows_with_stress, step_columns};
 use crate::warning::SolverWarnings;
 
-/// A checkpoint takes at most this share of the time.
+/// Checkpoints take at most one part in so many of the time; more in the first seconds, when that is little.
 const SHARE: u32 = 20;
+const FIRST_SHARE: u32 = 6;
+const FIRST: Duration = Duration::from_secs(5);
+/// At most one part in so many of the time so far is lost, nor more than this.
+const LOST: u32 = 25;
+const MOST_LOST: Duration = Duration::from_secs(2);
 
 /// What results remember beside their rows.
 const ACTION_FACTORS: &str = "results.action_factors";
@@ -71,9 +76,12 @@ impl<'a> Results<'a> {
     }
 
     /// Whether it is time for a checkpoint: `apart` after the last one, and seldom enough to cost little; with no time
-    /// apart it always is.
-    pub fn wants_checkpoint(&self, apart: Duration) -> bool {
-        let least = apart.max(self.checkpoints.cost * SHARE);
+    /// apart it always is. Where nothing is said, after a small part of the time so far, and of two seconds at most.
+    pub fn wants_checkpoint(&self, apart: Option<Duration>) -> bool {
+        let elapsed = self.checkpoints.began.elapsed();
+        let apart = apart.unwrap_or_else(|| MOST_LOST.min(elapsed / LOST));
+        let share = if elapsed < FIRST { FIRST_SHARE } else { SHARE };
+        let least = apart.max(self.checkpoints.cost * share);
         apart.is_zero() || self.checkpoints.written.elapsed() >= least
     }
 

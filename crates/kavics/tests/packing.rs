@@ -298,7 +298,7 @@ fn what_cannot_be_dropped_says_why() {
     );
     assert_eq!(
         says(drop(&Bed::empty_box(9.0), &[1.0, f64::NAN], 1, SEED)),
-        "radius NaN is not a positive number"
+        "radius NaN is not a number from 1e-30 to 1e30"
     );
     assert_eq!(
         says(drop(&Bed::empty_box(9.0), &[], 1, SEED)),

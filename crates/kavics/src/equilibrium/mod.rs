@@ -147,8 +147,8 @@ pub struct Event {
 /// displacement is their work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Of loads: Σ f·u / Σ abs f, f at factor 1, in their direction; of moves: factor times mean abs a, `[length]`; a
-    /// rotation, where they are of these alone.
+    /// Of loads: Σ f·u / Σ abs f, f the force on a body at factor 1; of moves: factor times the mean over the bodies of
+    /// abs a, a the move of a body at factor 1, `[length]`; a rotation, where they are of these alone.
     pub displacement: f64,
     /// Of loads: factor times Σ abs f; of moves: Σ r·a over the mean abs a, r the reactions, `[force]`.
     pub force: f64,

@@ -14,8 +14,8 @@ pub enum PackingError {
         /// Largest number of grains.
         most: usize,
     },
-    /// A radius that is not a positive number, or farther from 1 than 30 powers of ten.
-    #[error("radius {radius} is not a positive number of at most 1e30 (and at least 1e-30)")]
+    /// A radius that is not a positive number between 1e-30 and 1e30.
+    #[error("radius {radius} is not a number from 1e-30 to 1e30")]
     Radius {
         /// The radius, `[length]`.
         radius: f64,
@@ -30,8 +30,8 @@ pub enum PackingError {
         /// The largest coordinate of the container, `[length]`.
         farthest: f64,
     },
-    /// A width or height that is not a positive number, or farther from 1 than 30 powers of ten.
-    #[error("box length {length} is not a positive number of at most 1e30 (and at least 1e-30)")]
+    /// A width or height that is not a positive number between 1e-30 and 1e30.
+    #[error("box length {length} is not a number from 1e-30 to 1e30")]
     BoxLength {
         /// The length, `[length]`.
         length: f64,

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use kavics::contact_law::{Mode, Strength, StrengthKind};
-use kavics::equilibrium::{Displacement, Equilibrium, Event, EventKind, Load};
+use kavics::equilibrium::{Displacement, Drive, Equilibrium, Event, EventKind, Load};
 use kavics::geometry::Vector;
 use kavics::ids::{ContactId, GrainId};
 use kavics::loading::Breakage;
@@ -103,6 +103,7 @@ fn breaks_agree(twins: &Twins) -> Result<(), TestCaseError> {
                 twins.tolerance,
             )?;
             prop_assert_eq!(found.avalanche, before.avalanche);
+            drives_agree(twins, here, before.drive, found.drive)?;
         }
         close(
             "load factor",
@@ -113,6 +114,38 @@ fn breaks_agree(twins: &Twins) -> Result<(), TestCaseError> {
         prop_assert_eq!(there.complete, here.complete);
     }
     Ok(())
+}
+
+/// How far what drives the path has gone, whatever the axes.
+fn drives_agree(
+    twins: &Twins,
+    at: &Equilibrium,
+    before: Option<Drive>,
+    found: Option<Drive>,
+) -> Result<(), TestCaseError> {
+    let (Some(before), Some(found)) = (before, found) else {
+        prop_assert_eq!(before.is_some(), found.is_some());
+        return Ok(());
+    };
+    let displacements = at.state.displacements.values().iter();
+    let largest = displacements.fold(before.displacement.abs(), |most, u| {
+        most.max(u.x.hypot(u.y))
+    });
+    let forces = [&at.loads, &at.reactions]
+        .map(|loads| loads.values().iter().map(|f| f.x.hypot(f.y)).sum::<f64>());
+    let [displacement, force] = [twins.change.displacement, twins.change.force];
+    close(
+        "displacement at a break",
+        found.displacement,
+        displacement * before.displacement,
+        twins.tolerance * displacement * largest,
+    )?;
+    close(
+        "force at a break",
+        found.force,
+        force * before.force,
+        twins.tolerance * force * (forces[0] + forces[1] + before.force.abs()),
+    )
 }
 
 /// As many load steps, and an end for the same reason.

@@ -66,31 +66,38 @@ impl Acting {
         displacements: impl Iterator<Item = (BodyId, Displacement)>,
         reactions: impl Iterator<Item = f64>,
     ) -> Option<Drive> {
-        let loads = displacements.flat_map(|(body, u)| {
-            let rate = self.loads[body.index()][1].components();
-            ALL_FREEDOMS
-                .into_iter()
-                .zip(rate.into_iter().zip(u.components()))
-        });
-        let moves = self.moved.iter().zip(reactions);
-        let moves = moves.map(|((_, freedom, value), reaction)| (*freedom, (value[1], reaction)));
-        let loads = of_one_dimension(loads.collect());
-        let moves = of_one_dimension(moves.collect());
         if self.load_factor != [0.0, 1.0] {
             return None;
         }
-        let whole = |parts: &[(f64, f64)]| parts.iter().map(|part| part.0.abs()).sum::<f64>();
-        let work = |parts: &[(f64, f64)]| parts.iter().map(|part| part.0 * part.1).sum::<f64>();
-        match (loads.is_empty(), moves.is_empty()) {
-            (false, true) => Some(Drive {
-                displacement: work(&loads) / whole(&loads),
-                force: x * whole(&loads),
+        let loads = displacements.flat_map(|(body, u)| {
+            let rates = self.loads[body.index()][1].components().into_iter();
+            let parts = ALL_FREEDOMS.into_iter().zip(rates.zip(u.components()));
+            parts.map(move |(freedom, (rate, with))| Part {
+                body,
+                freedom,
+                rate,
+                with,
+            })
+        });
+        let moves = self.moved.iter().zip(reactions);
+        let moves = moves.map(|(&(body, freedom, [_, rate]), with)| Part {
+            body,
+            freedom,
+            rate,
+            with,
+        });
+        let loads = Varying::of(loads.collect());
+        let moves = Varying::of(moves.collect());
+        match (loads.bodies, moves.bodies) {
+            (1.., 0) => Some(Drive {
+                displacement: loads.work / loads.size,
+                force: x * loads.size,
             }),
-            (true, false) => {
-                let mean = whole(&moves) / moves.len() as f64;
+            (0, 1..) => {
+                let mean = moves.size / moves.bodies as f64;
                 Some(Drive {
                     displacement: x * mean,
-                    force: work(&moves) / mean,
+                    force: moves.work / mean,
                 })
             }
             _ => None,
@@ -108,13 +115,39 @@ impl Acting {
     }
 }
 
-/// Sizes that vary, with what belongs to each; of rotations only where nothing else varies.
-fn of_one_dimension(mut parts: Vec<(Freedom, (f64, f64))>) -> Vec<(f64, f64)> {
-    parts.retain(|part| part.1.0 != 0.0);
-    if parts.iter().any(|part| part.0 != Freedom::Rotation) {
-        parts.retain(|part| part.0 != Freedom::Rotation);
+/// A component of what varies, and the displacement or reaction that belongs to it.
+struct Part {
+    body: BodyId,
+    freedom: Freedom,
+    rate: f64,
+    with: f64,
+}
+
+/// What varies, as a whole.
+struct Varying {
+    /// Bodies it acts on.
+    bodies: usize,
+    /// Σ of its sizes on them: lengths of vectors, whatever the axes.
+    size: f64,
+    /// Σ of its components times what belongs to them.
+    work: f64,
+}
+
+impl Varying {
+    /// The sum of parts, body by body; of rotations only where nothing else varies.
+    fn of(mut parts: Vec<Part>) -> Self {
+        parts.retain(|part| part.rate != 0.0);
+        if parts.iter().any(|part| part.freedom != Freedom::Rotation) {
+            parts.retain(|part| part.freedom != Freedom::Rotation);
+        }
+        let of_bodies = parts.chunk_by(|a, b| a.body == b.body);
+        let size = |parts: &[Part]| parts.iter().map(|part| part.rate * part.rate).sum::<f64>();
+        Self {
+            bodies: of_bodies.clone().count(),
+            size: of_bodies.map(|parts| size(parts).sqrt()).sum(),
+            work: parts.iter().map(|part| part.rate * part.with).sum(),
+        }
     }
-    parts.into_iter().map(|part| part.1).collect()
 }
 
 /// Where a load step starts and ends, in x.
