@@ -18,6 +18,7 @@ use crate::ResultsError;
 use crate::chosen_columns::unchanging;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
+use crate::table_file;
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -68,16 +69,13 @@ impl Columns {
             ParquetRecordBatchReaderBuilder<File>,
         ) -> ParquetRecordBatchReaderBuilder<File>,
     ) -> Result<Self, ResultsError> {
-        let file = File::open(path).map_err(ResultsError::unreadable(path))?;
-        let reader = ParquetRecordBatchReaderBuilder::try_new(file)
-            .and_then(|builder| {
-                let mask = names.map_or_else(ProjectionMask::all, |names| {
-                    ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
-                });
-                let builder = choose(builder.with_projection(mask));
-                builder.with_batch_size(1 << 16).build()
-            })
-            .map_err(ResultsError::table(path))?;
+        let builder = table_file::open(path)?;
+        let mask = names.map_or_else(ProjectionMask::all, |names| {
+            ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
+        });
+        let builder = choose(builder.with_projection(mask));
+        let reader = builder.with_batch_size(1 << 16).build();
+        let reader = reader.map_err(ResultsError::table(path))?;
         let schema = reader.schema();
         let batches = reader
             .collect::<Result<Vec<_>, _>>()
@@ -240,9 +238,7 @@ impl TableHead {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
-        let file = File::open(path).map_err(ResultsError::unreadable(path))?;
-        let builder = ParquetRecordBatchReaderBuilder::try_new(file);
-        let builder = builder.map_err(ResultsError::table(path))?;
+        let builder = table_file::open(path)?;
         Ok(Self {
             schema: Arc::clone(builder.schema()),
             rows: builder.metadata().file_metadata().num_rows() as usize,

@@ -32,6 +32,7 @@ mod room;
 mod sides;
 mod stability;
 mod steps;
+mod table_file;
 mod voids;
 mod warning;
 

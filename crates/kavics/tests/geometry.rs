@@ -579,3 +579,41 @@ fn odd_input_does_not_panic() {
         }
     }
 }
+
+/// A cell that grows by a rounding with each cut would be cut for ever.
+#[test]
+fn discs_that_nearly_coincide_come_to_an_end() {
+    let step = |start: f64, count: usize| -> Vec<(f64, f64, f64)> {
+        let mut values = (0..3 * count).map(|k| start - k as f64 * start * f64::EPSILON);
+        let mut next = || values.next().unwrap_or(start);
+        (0..count).map(|_| (next(), next(), next())).collect()
+    };
+    let mut discs = vec![(202.0, 202.0, 202.0); 3];
+    discs.push((202.0, 6.0 * ROOT_3, 6.0 * ROOT_3));
+    discs.extend(vec![(6.0 * ROOT_3, 6.0 * ROOT_3, 6.0 * ROOT_3); 6]);
+    discs.extend(step(6.0 * ROOT_3, 6));
+    discs.extend([
+        (6.0 * ROOT_3, 202.0, 202.0),
+        (202.0, 202.0, 202.0),
+        (202.0, 202.0, 40.0),
+    ]);
+    discs.extend([(10.0, 1.0, 1.0), (1.0, 1.0, 0.999_999_999)]);
+    discs.extend([
+        (
+            0.999_999_998_000_000_1,
+            0.999_999_997_000_000_1,
+            0.999_999_996_000_000_1,
+        ),
+        (
+            0.999_999_995_000_000_1,
+            0.999_999_994_000_000_2,
+            0.999_999_993_000_000_2,
+        ),
+        (0.999_999_993_000_000_2, 0.999_999_993_000_000_3, 1.0),
+    ]);
+    discs.extend([(1.0, 5.0, 1.0), (5.0, 1.0, 7.0)]);
+    let pack = Pack::new(202.0, 202.0, &discs);
+    for between in [Between::Touching, Between::Neighbours] {
+        assert_eq!(pack.graph(between).cell_area.len(), discs.len());
+    }
+}
