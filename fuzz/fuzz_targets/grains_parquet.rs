@@ -1,7 +1,7 @@
 //! Any bytes as a Parquet list of grains: grains that can be placed, or a sentence.
 #![no_main]
 
-use kavics_fuzz::list_of_grains;
+use kavics_fuzz::{let_guarded_panics_pass, list_of_grains};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|bytes: &[u8]| list_of_grains(bytes, "parquet"));
+fuzz_target!(init: let_guarded_panics_pass(), |bytes: &[u8]| list_of_grains(bytes, "parquet"));

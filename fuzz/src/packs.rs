@@ -71,7 +71,7 @@ fn polygon(width: f64, height: f64) -> Result<Container, PackingError> {
 }
 
 fn radii(numbers: &mut Numbers<'_>, count: usize) -> Result<Vec<f64>, PackingError> {
-    if numbers.byte() % 2 == 0 {
+    if numbers.byte().is_multiple_of(2) {
         return any_sizes(numbers).radii(count, 1_u64);
     }
     Ok((0..count).map(|_| numbers.next()).collect())

@@ -41,7 +41,7 @@ pub fn first_load_steps(scene: &Scene) {
 
 /// Places grains at given rows of (x, y, radius) in a scene, holds the lowest and pushes the sides.
 pub fn as_grains(width: f64, height: f64, rows: &[[f64; 3]]) {
-    let between = if rows.len() % 2 == 0 {
+    let between = if rows.len().is_multiple_of(2) {
         "touching"
     } else {
         "neighbours"

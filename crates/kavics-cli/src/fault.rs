@@ -14,6 +14,9 @@ static RESULTS: OnceLock<PathBuf> = OnceLock::new();
 pub fn tell_of_faults() {
     let usual = take_hook();
     set_hook(Box::new(move |panic| {
+        if kavics_results::is_guarded() {
+            return;
+        }
         let what = panic.payload_as_str().unwrap_or("no reason is given");
         let place = panic.location().map(ToString::to_string);
         let place = place.unwrap_or_else(|| "an unknown place".to_owned());

@@ -12,10 +12,12 @@ use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, Schema, SchemaRef};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::errors::ParquetError;
 use serde::Deserialize;
 
 use crate::ResultsError;
 use crate::chosen_columns::unchanging;
+use crate::guard::guarded;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
 use crate::table_file;
@@ -73,13 +75,14 @@ impl Columns {
         let mask = names.map_or_else(ProjectionMask::all, |names| {
             ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
         });
-        let builder = choose(builder.with_projection(mask));
-        let reader = builder.with_batch_size(1 << 16).build();
-        let reader = reader.map_err(ResultsError::table(path))?;
-        let schema = reader.schema();
-        let batches = reader
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(ResultsError::table(path))?;
+        let builder = choose(builder.with_projection(mask)).with_batch_size(1 << 16);
+        let read = guarded(|| {
+            let reader = builder.build()?;
+            let schema = reader.schema();
+            let batches: Result<Vec<RecordBatch>, _> = reader.collect();
+            Ok((schema, batches?))
+        });
+        let (schema, batches) = read.map_err(ResultsError::table::<ParquetError>(path))?;
         let rows = batches.iter().map(RecordBatch::num_rows).sum();
         Ok(Self {
             path: path.to_owned(),

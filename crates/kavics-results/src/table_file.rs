@@ -5,9 +5,10 @@ use std::path::Path;
 
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 
 use crate::ResultsError;
+use crate::guard::guarded;
 
 /// Opens a Parquet file and reads its footer.
 pub(crate) fn open(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<File>, ResultsError> {
@@ -16,7 +17,7 @@ pub(crate) fn open(path: &Path) -> Result<ParquetRecordBatchReaderBuilder<File>,
         .metadata()
         .map_err(ResultsError::unreadable(path))?
         .len();
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file);
+    let builder = guarded(|| ParquetRecordBatchReaderBuilder::try_new(file));
     builder
         .and_then(|builder| check(builder.metadata(), length).map(|()| builder))
         .map_err(ResultsError::table(path))
@@ -28,7 +29,7 @@ fn check(metadata: &ParquetMetaData, length: u64) -> Result<(), ParquetError> {
         let rows = group.num_rows();
         (rows >= 0).then(|| sum.checked_add(rows)).flatten()
     });
-    let mut columns = groups.iter().flat_map(|group| group.columns());
+    let mut columns = groups.iter().flat_map(RowGroupMetaData::columns);
     if rows == Some(metadata.file_metadata().num_rows()) && columns.all(|c| is_within(c, length)) {
         return Ok(());
     }

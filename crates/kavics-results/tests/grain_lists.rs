@@ -411,3 +411,20 @@ fn no_file_makes_a_panic() {
         }
     }
 }
+
+/// Among them are files on which libraries that decode them stop.
+#[test]
+fn whatever_fuzzing_begins_with_is_read_or_refused() {
+    let room = tempfile::tempdir().expect("a temporary folder");
+    let corpora = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
+    let mut refused = 0;
+    for ending in ["parquet", "xyz", "dump"] {
+        let corpus = fs::read_dir(corpora.join(format!("grains_{ending}"))).expect("a corpus");
+        for entry in corpus {
+            let list = room.path().join(format!("list.{ending}"));
+            fs::copy(entry.expect("a file").path(), &list).expect("room on the disk");
+            refused += usize::from(read_grains(&list, None).is_err());
+        }
+    }
+    assert!(refused > 2, "{refused}");
+}

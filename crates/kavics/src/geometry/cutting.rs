@@ -172,15 +172,14 @@ impl Clipping<'_> {
         }
         for level in &grid.levels {
             let grown = level.largest_radius * level.largest_radius - disc.radius * disc.radius;
-            let mut done = 0.0;
+            let (mut done, mut reach) = (0.0, f64::INFINITY);
             loop {
                 // A disc at distance D has its radical axis no nearer than (D² + R² − R_max²)/2D.
                 let farthest = cell.farthest_squared;
-                let reach = farthest.sqrt() + (farthest + grown).max(0.0).sqrt();
-                let reach = reach * (1.0 + 1e-6);
-                // Cut by discs that nearly coincide, a cell may grow by roundings, again and again.
-                let is_done = reach <= done * (1.0 + 1e-9);
-                if cell.edges.is_empty() || is_done || reach.is_nan() {
+                let now = farthest.sqrt() + (farthest + grown).max(0.0).sqrt();
+                // A cell that discs cut which nearly coincide may grow by roundings, again and again.
+                reach = (now * (1.0 + 1e-6)).min(reach);
+                if cell.edges.is_empty() || reach <= done || now.is_nan() {
                     break;
                 }
                 let step = if done == 0.0 {
