@@ -135,7 +135,8 @@ fn range(text: &str) -> Result<Range, String> {
     ends.filter(is_right).ok_or_else(expected)
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+/// A number that is one.
+pub fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "expected a number".to_owned())
 }

@@ -28,6 +28,7 @@ pub struct ExportArguments {
         value_name = "TIMES",
         default_value_t = 1.0,
         hide_default_value = true,
+        value_parser = crate::draw_arguments::finite,
         allow_hyphen_values = true
     )]
     pub scale: f64,

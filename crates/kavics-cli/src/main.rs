@@ -37,7 +37,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     fault::tell_of_faults();
-    signals::let_large_files_fail();
+    signals::block_some();
     let done = match Arguments::try_parse() {
         Ok(arguments) => {
             terminal::speak(arguments.loudness());

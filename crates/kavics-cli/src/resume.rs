@@ -92,6 +92,8 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
         ));
         return begin_locked(scene, folder, options, lock);
     };
+    // Without its scene nothing says that a checkpoint belongs to this one.
+    ResultsFolder::open(folder)?.scene()?;
     for note in &checkpoint.notes {
         say(&format!("warning: {note}\n"));
     }

@@ -61,13 +61,26 @@ fn first_signal(begun: &Mutex<bool>, answer: &str) {
     }
 }
 
-/// A file beyond the limit of the process is an error like a full disk, not a signal. Threads begun later do the same.
-pub fn let_large_files_fail() {
+/// Whether whoever started a process has it ignore a signal, by what Linux tells of it.
+#[cfg(unix)]
+fn ignores(status: &str, signal: nix::sys::signal::Signal) -> bool {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal as i32 - 1) & 1 == 1)
+}
+
+/// A file beyond the limit of the process is an error like a full disk, not a signal; and a terminal that is closed is nothing
+/// where `nohup` says so. Threads begun later do the same.
+pub fn block_some() {
     #[cfg(unix)]
     {
         use nix::sys::signal::{SigSet, Signal};
         let mut signals = SigSet::empty();
         signals.add(Signal::SIGXFSZ);
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        if ignores(&status, Signal::SIGHUP) {
+            signals.add(Signal::SIGHUP);
+        }
         // Where that cannot be had the signal ends the program, as it would have.
         let _ = signals.thread_block();
     }

@@ -223,6 +223,39 @@ fn a_run_that_was_stopped_is_said_to_be_unfinished_everywhere() {
     place.assert_ends_alike("stopped", &[]);
 }
 
+/// `nohup` lets the signal be ignored.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_that_is_to_outlive_its_terminal_does() {
+    let place = Place::with(SLIDING);
+    let command = place.command("outlives", &[]);
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", "trap '' HUP; exec \"$0\" \"$@\""]);
+    shell.arg(command.get_program()).args(command.get_args());
+    shell.current_dir(command.get_current_dir().expect("a folder"));
+    shell.stdout(std::process::Stdio::null());
+    let child = shell.spawn().expect("a shell");
+    wait_for(&place.folder("outlives/grains/000000.parquet"));
+    signal(&child, Signal::SIGHUP);
+    assert_eq!(ended(child).code(), Some(0));
+}
+
+#[test]
+fn a_checkpoint_without_its_scene_is_not_gone_on_from() {
+    let place = Place::with(SLIDING);
+    let child = place.run_to("stopped", 2);
+    signal(&child, Signal::SIGTERM);
+    assert_eq!(ended(child).code(), Some(75));
+    let scene = place.folder("stopped/scene.toml");
+    let text = fs::read(&scene).expect("a scene");
+    fs::remove_file(&scene).expect("a file");
+    let refused = place.run("stopped", &["--resume"]);
+    assert_eq!(refused.status.code(), Some(4), "{}", said(&refused));
+    assert!(said(&refused).contains("scene.toml"), "{}", said(&refused));
+    fs::write(&scene, text).expect("room on the disk");
+    place.assert_ends_alike("stopped", &[]);
+}
+
 #[test]
 fn a_long_load_step_is_not_waited_for() {
     // One load step of hundreds of events.

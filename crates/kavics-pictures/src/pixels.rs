@@ -30,7 +30,7 @@ impl Picture {
             height,
             most: MOST_PIXELS,
         };
-        let pixmap = Pixmap::new(width, height).filter(|_| fits);
+        let pixmap = fits.then(|| Pixmap::new(width, height)).flatten();
         let mut pixels = Pixels {
             pixmap: pixmap.ok_or_else(too_large)?,
             scale: pixels_a_millimetre as f32,

@@ -171,6 +171,11 @@ impl Outline {
 
 /// Text that may stand in XML.
 pub(crate) fn escape(text: &str) -> String {
+    // XML has no place for other control characters.
+    let text = text.replace(
+        |c: char| c.is_control() && !"\t\n\r".contains(c),
+        "\u{fffd}",
+    );
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -161,20 +161,23 @@ const MOST_MODES: i64 = 100;
 
 /// Least bound on the residual: a few roundings of double precision.
 const LEAST_TOLERANCE: f64 = 1e-14;
+/// Largest one: with forces known to fewer than three digits contacts would break or hold by the bound.
+const MOST_TOLERANCE: f64 = 1e-3;
 
 fn tolerance(number: Option<&Number>, default: f64, checker: &mut Checker) -> Option<f64> {
     let Some(number) = number else {
         return Some(default);
     };
     let value = checker.number(number, "tolerance", Dimension::Number, Bound::Positive)?;
-    if value >= LEAST_TOLERANCE {
-        return Some(value);
-    }
-    checker.push(Problem::at(
-        &number.span,
-        format!("`tolerance` cannot be {value:e}"),
-        format!("expected at least {LEAST_TOLERANCE:e}; double precision reaches no less"),
-    ));
+    let expected = match value {
+        LEAST_TOLERANCE..=MOST_TOLERANCE => return Some(value),
+        ..LEAST_TOLERANCE => {
+            format!("expected at least {LEAST_TOLERANCE:e}; double precision reaches no less")
+        }
+        _ => format!("expected at most {MOST_TOLERANCE:e}; what is farther off is no equilibrium"),
+    };
+    let problem = format!("`tolerance` cannot be {value:e}");
+    checker.push(Problem::at(&number.span, problem, expected));
     None
 }
 
