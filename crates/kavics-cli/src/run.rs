@@ -72,10 +72,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         Ended::Done => (RunState::Done, None),
         Ended::NoEquilibrium(error) => (RunState::NoEquilibrium, Some(error)),
     };
-    let lone = table.map(|table| table.unmatched(results.steps()));
-    for lone in lone.unwrap_or_default() {
-        results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
-    }
+    warn_of_unmatched(table.as_ref(), &mut results);
     let why = failure.as_ref().map(ToString::to_string);
     let steps = conclude(&scene, results, state, why, began)?;
     finish_report(&folder)?;
@@ -86,6 +83,13 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
             last: steps.last().map_or(0, |row| row.step),
             folder,
         }),
+    }
+}
+
+fn warn_of_unmatched(table: Option<&ComparedTable>, results: &mut Results<'_>) {
+    let lone = table.map(|table| table.unmatched(results.steps()));
+    for lone in lone.unwrap_or_default() {
+        results.warn(WarningKind::ComparedTable.says(format_args!("compare.csv: {lone}")));
     }
 }
 
