@@ -4,7 +4,9 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::Scene;
-use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
+use kavics_results::{
+    Recorded, ResultsFolder, StepRow, check_output, read_grains, write_steps, write_steps_csv,
+};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
@@ -12,6 +14,9 @@ use crate::failure::Failure;
 use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
+    if let Some(path) = &arguments.output {
+        check_output(path, &[])?;
+    }
     let folder = ResultsFolder::open(&arguments.results)?;
     folder.check_whole()?;
     let scene = scene_of(&folder, arguments.window.as_deref())?;
