@@ -23,7 +23,7 @@ pub fn note_refusal(folder: &Path, why: &str) -> Result<(), ResultsError> {
     publish(&path, log.text().as_bytes())
 }
 
-#[derive(Default, Serialize)]
+#[derive(Clone, Copy, Default, Serialize)]
 struct Line<'a> {
     seconds: f64,
     what: &'a str,

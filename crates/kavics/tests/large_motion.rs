@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use kavics::equilibrium::{Equilibrium, LargeMotion, Motion, SMALL, Warning};
+use kavics::equilibrium::{Equilibrium, LargeMotion, Motion, SMALL_MOTION, Warning};
 use kavics::ids::{ContactId, GrainId};
 use kavics::scene::Scene;
 
@@ -72,9 +72,9 @@ fn a_grain_pressed_by_more_than_a_tenth_of_its_branch_is_told_under_every_contro
         lone(&format!("{{ y = {force} }}"), control)
     };
     for control in controls {
-        assert_eq!(large(&last(&pressed(0.999 * SMALL, control))), None);
-        let above = pressed(1.001 * SMALL, control);
-        assert_large(&above, 1.001 * SMALL, Motion::Branch(ContactId(0)));
+        assert_eq!(large(&last(&pressed(0.999 * SMALL_MOTION, control))), None);
+        let above = pressed(1.001 * SMALL_MOTION, control);
+        assert_large(&above, 1.001 * SMALL_MOTION, Motion::Branch(ContactId(0)));
         assert_large(&pressed(48.0, control), 48.0, Motion::Branch(ContactId(0)));
     }
 }
@@ -88,10 +88,10 @@ fn a_grain_that_turns_by_more_than_a_tenth_is_told() {
         let applied = angle * (moment + shear);
         lone(&format!("{{ moment = {applied} }}"), held)
     };
-    assert_eq!(large(&last(&turned(-0.999 * SMALL))), None);
+    assert_eq!(large(&last(&turned(-0.999 * SMALL_MOTION))), None);
     assert_large(
-        &turned(-1.001 * SMALL),
-        1.001 * SMALL,
+        &turned(-1.001 * SMALL_MOTION),
+        1.001 * SMALL_MOTION,
         Motion::Turn(GrainId(0)),
     );
 }
@@ -104,9 +104,9 @@ fn a_grain_that_goes_along_a_side_by_more_than_a_tenth_of_the_side_is_told() {
         let force = share * 20.0 * STIFFNESS[1];
         lone(&format!("{{ x = {force} }}"), upright)
     };
-    assert_eq!(large(&last(&pushed(0.999 * SMALL))), None);
-    let above = pushed(1.001 * SMALL);
-    assert_large(&above, 1.001 * SMALL, Motion::Along(ContactId(0)));
+    assert_eq!(large(&last(&pushed(0.999 * SMALL_MOTION))), None);
+    let above = pushed(1.001 * SMALL_MOTION);
+    assert_large(&above, 1.001 * SMALL_MOTION, Motion::Along(ContactId(0)));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::ids::{ContactId, GrainId, PerGrain};
 
 /// Displacements over branch lengths, and rotations, up to which they count as small: across a branch such a displacement
 /// turns it by atan 0.1, some 6°, and makes it longer by √1.01, half a per cent.
-pub const SMALL: f64 = 0.1;
+pub const SMALL_MOTION: f64 = 0.1;
 
 /// The largest motion of bodies that contacts join, where it is not small.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl LargeMotion {
     ) -> Option<Self> {
         let mut large = None;
         let mut note = |size: f64, motion| {
-            if size > large.map_or(SMALL, |largest: Self| largest.size) {
+            if size > large.map_or(SMALL_MOTION, |largest: Self| largest.size) {
                 large = Some(Self { size, motion });
             }
         };

@@ -27,7 +27,7 @@ mod watch;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
-pub use large_motion::{LargeMotion, Motion, SMALL};
+pub use large_motion::{LargeMotion, Motion, SMALL_MOTION};
 pub use memory::{Memory, MemoryColumn, MemoryError};
 pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
