@@ -133,10 +133,10 @@ pub enum ResultsError {
         /// The version that began it.
         version: String,
     },
-    /// A checkpoint is damaged.
+    /// A checkpoint or a table is damaged.
     #[error("{}: {reason}", path.display())]
     Damaged {
-        /// The checkpoint.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         reason: String,
@@ -213,6 +213,7 @@ impl ResultsError {
         match self {
             Self::Unreadable { source, .. } | Self::Unwritable { source, .. } => source.to_string(),
             Self::Table { source, .. } => format!("not a Parquet file: {source}"),
+            Self::Damaged { reason, .. } => reason.clone(),
             Self::NoColumn { column, .. } => format!("no column is called \"{column}\""),
             Self::WrongColumn { column, wanted, .. } => {
                 format!("column \"{column}\" does not hold {wanted}")

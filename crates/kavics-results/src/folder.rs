@@ -1,6 +1,6 @@
 //! Reading a results folder back, by column name.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,6 @@ use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, Schema, SchemaRef};
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::errors::ParquetError;
 use serde::Deserialize;
 
@@ -20,7 +19,7 @@ use crate::chosen_columns::unchanging;
 use crate::guard::guarded;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
 use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
-use crate::table_file;
+use crate::table_file::TableFile;
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -47,7 +46,7 @@ impl Columns {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read_some(path: &Path, names: Option<&[&str]>) -> Result<Self, ResultsError> {
-        Self::read_by(path, names, |builder| builder)
+        Self::read_rows(path, names, 0..usize::MAX)
     }
 
     /// Reads some rows of the named columns, or of all, as far as the table reaches.
@@ -59,23 +58,13 @@ impl Columns {
         names: Option<&[&str]>,
         rows: Range<usize>,
     ) -> Result<Self, ResultsError> {
-        Self::read_by(path, names, |builder| {
-            builder.with_offset(rows.start).with_limit(rows.len())
-        })
-    }
-
-    fn read_by(
-        path: &Path,
-        names: Option<&[&str]>,
-        choose: impl FnOnce(
-            ParquetRecordBatchReaderBuilder<File>,
-        ) -> ParquetRecordBatchReaderBuilder<File>,
-    ) -> Result<Self, ResultsError> {
-        let builder = table_file::open(path)?;
+        let mut table = TableFile::open(path)?;
         let mask = names.map_or_else(ProjectionMask::all, |names| {
-            ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
+            ProjectionMask::columns(table.builder.parquet_schema(), names.iter().copied())
         });
-        let builder = choose(builder.with_projection(mask)).with_batch_size(1 << 16);
+        table.check_columns(&mask, &rows)?;
+        let builder = table.builder.with_projection(mask).with_batch_size(1 << 16);
+        let builder = builder.with_offset(rows.start).with_limit(rows.len());
         let read = guarded(|| {
             let reader = builder.build()?;
             let schema = reader.schema();
@@ -241,7 +230,7 @@ impl TableHead {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
-        let builder = table_file::open(path)?;
+        let builder = TableFile::open(path)?.builder;
         Ok(Self {
             schema: Arc::clone(builder.schema()),
             rows: builder.metadata().file_metadata().num_rows() as usize,

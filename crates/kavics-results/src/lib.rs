@@ -7,6 +7,7 @@ mod actions;
 mod checkpoint;
 mod checkpoint_file;
 mod checkpoint_frame;
+mod checksums;
 mod chosen_columns;
 mod column;
 mod contacts;
