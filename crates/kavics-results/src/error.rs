@@ -105,6 +105,14 @@ pub enum ResultsError {
         /// Rows that the scene makes.
         expected: usize,
     },
+    /// A table stands where that of another load step or run belongs.
+    #[error("{}: {reason}; it was put there from elsewhere", path.display())]
+    Misplaced {
+        /// The table.
+        path: PathBuf,
+        /// What tells so.
+        reason: String,
+    },
     /// The run to go on with was of another scene.
     #[error(
         "{}: the scene has changed since the run began, at line {line} of its scene.toml\n  then: {ran}\n  now:  {now}\n\

@@ -16,7 +16,7 @@ use crate::guard::guarded;
 
 /// A Parquet file whose footer is read and whole.
 pub(crate) struct TableFile {
-    path: PathBuf,
+    pub(crate) path: PathBuf,
     file: File,
     checksums: Checksums,
     pub(crate) builder: ParquetRecordBatchReaderBuilder<File>,
