@@ -466,6 +466,7 @@ impl ResultsFolder {
             };
         }
         let before = TableFile::open(&self.table_path(table, 0))?;
+        self.check_place(&before, table, 0)?;
         table_place::check_alike(path, table, metadata, before.builder.metadata())
     }
 
