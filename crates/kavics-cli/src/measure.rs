@@ -3,7 +3,7 @@
 use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
-use kavics::scene::Scene;
+use kavics::scene::{Scene, SceneError};
 use kavics_results::{
     Recorded, ResultsFolder, StepRow, check_output, read_grains, write_steps, write_steps_csv,
 };
@@ -11,6 +11,7 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::Failure;
+use crate::origins::Origins;
 use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
@@ -53,10 +54,19 @@ fn measured_rows(folder: &ResultsFolder, scene: &Scene) -> Result<Vec<StepRow>, 
 
 /// The scene of the results. What it read from other files is read from the folder.
 fn scene_of(folder: &ResultsFolder, window: Option<&str>) -> Result<Scene, Failure> {
-    let text = in_window(&own_files::named(&folder.scene()?, &[]), window)?;
-    let name = folder.path().join("scene.toml");
-    Scene::parse(&text, &name.to_string_lossy(), folder.path(), &read_grains)
-        .map_err(Failure::Scene)
+    let ran = own_files::named(&folder.scene()?, &[]);
+    let text = in_window(&ran, window)?;
+    let path = folder.path().join("scene.toml");
+    let name = path.to_string_lossy();
+    let parsed = Scene::parse(&text, &name, folder.path(), &read_grains);
+    parsed.map_err(|error| match (error, window) {
+        (SceneError::Wrong(message), Some(window)) => {
+            let origins = Origins::of_file(&ran).changed(&ran, &text, 0);
+            let given = [format!("--window {window}")];
+            Failure::Scene(SceneError::Wrong(origins.relocate(&message, &name, &given)))
+        }
+        (error, _) => Failure::Scene(error),
+    })
 }
 
 fn in_window(text: &str, window: Option<&str>) -> Result<String, Failure> {

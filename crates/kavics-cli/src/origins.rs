@@ -34,7 +34,8 @@ impl Origins {
         Self { lines }
     }
 
-    /// A message about the changed text called `name`, with lines of the file, or the change in their place.
+    /// A message about the changed text called `name`, with lines of the file, or the change in their place as the user
+    /// gave it.
     pub fn relocate(&self, message: &str, name: &str, changes: &[String]) -> String {
         let line = |line: &str| {
             self.place(line, name, changes)
@@ -59,7 +60,7 @@ impl Origins {
             .split_once(':')?;
         Some(match self.origin(row)? {
             Origin::File(row) => format!("{indent}--> {name}:{row}:{column}"),
-            Origin::Change(change) => format!("{indent}--> --set {}", changes[change]),
+            Origin::Change(change) => format!("{indent}--> {}", changes[change]),
         })
     }
 
@@ -109,7 +110,7 @@ mod tests {
     fn lines_of_the_file_keep_their_numbers_and_changes_are_named() {
         let (old, new) = ("a = 1\n\n[b]\nc = 1\n", "a = 1\nd = 2\n\n[b]\nc = 3\n");
         let origins = Origins::of_file(old).changed(old, new, 0);
-        let changes = ["d=2".to_owned()];
+        let changes = ["--set d=2".to_owned()];
         let moved = |message: &str| origins.relocate(message, "s.toml", &changes);
         assert_eq!(
             moved(" --> s.toml:4:1\n  |\n4 | [b]\n  | ^^^"),
@@ -126,7 +127,7 @@ mod tests {
     fn other_ends_of_lines_change_no_number() {
         let (old, new) = ("a = 1\r\n\r\nb = 2\r\n", "d = 2\na = 1\n\nb = 2\n");
         let origins = Origins::of_file(old).changed(old, new, 0);
-        let moved = origins.relocate(" --> s.toml:4:1", "s.toml", &["d=2".to_owned()]);
+        let moved = origins.relocate(" --> s.toml:4:1", "s.toml", &["--set d=2".to_owned()]);
         assert_eq!(moved, " --> s.toml:3:1");
     }
 }

@@ -12,7 +12,7 @@ use kavics::warning::WarningKind;
 use kavics_report::ComparedTable;
 use kavics_results::{
     Lock, Options, Results, ResultsFolder, RunState, StepRow, check_apart, check_room, check_same,
-    clear_checkpoints, clear_unpublished,
+    clear_checkpoints, clear_unpublished, has_unpublished,
 };
 
 use crate::arguments::RunArguments;
@@ -204,12 +204,15 @@ fn stop(results: Results<'_>, folder: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Nothing is left to do but what a run that was broken off at its very end may have left out.
+/// Nothing is left to do but what a run that was broken off at its very end may have left out; nothing is locked, and may
+/// be read-only, where nothing is left to do at all.
 fn finished(folder: &Path) -> Result<(), Failure> {
-    if folder.join("checkpoint").is_dir() {
-        let _lock = resume::lock(folder)?;
-        clear_checkpoints(folder)?;
+    let is_whole = !folder.join("checkpoint").is_dir() && folder.join("report.html").is_file();
+    if is_whole && !has_unpublished(folder)? {
+        return Ok(());
     }
+    let _lock = resume::lock(folder)?;
+    clear_checkpoints(folder)?;
     clear_unpublished(folder)?;
     if folder.join("report.html").is_file() {
         return Ok(());

@@ -75,7 +75,8 @@ fn with_text<T>(
     let name = path.to_string_lossy();
     read(&text, &name, folder).map_err(|failure| match failure {
         Failure::Scene(SceneError::Wrong(message)) if !arguments.set.is_empty() => {
-            let message = origins.relocate(&message, &name, &arguments.set);
+            let changes = arguments.set.iter().map(|given| format!("--set {given}"));
+            let message = origins.relocate(&message, &name, &changes.collect::<Vec<_>>());
             Failure::Scene(SceneError::Wrong(message))
         }
         other => other,

@@ -292,6 +292,34 @@ fn a_run_has_room_in_the_addresses_that_it_asks_for() {
 }
 
 #[test]
+fn a_run_does_not_go_on_where_a_recorded_table_is_missing_or_damaged() {
+    let place = Place::with(SLIDING);
+    stop(place.run_to("lacking", 4));
+    let folder = place.folder("lacking");
+    for table in ["grains/000000.parquet", "contacts/000003.parquet"] {
+        let whole = fs::read(folder.join(table)).expect("a table");
+        let says = |what: &str| {
+            let before = files(&folder);
+            let failed = place.run("lacking", &["--resume"]);
+            let said = said(&failed);
+            assert_eq!(failed.status.code(), Some(4), "{said}");
+            assert!(said.contains(table) && said.contains(what), "{said}");
+            assert!(!said.contains("going on"), "{said}");
+            assert!(files(&folder) == before);
+        };
+        fs::remove_file(folder.join(table)).expect("a table");
+        says("is missing");
+        let mut bytes = whole.clone();
+        let near_the_end = bytes.len() - 100;
+        bytes[near_the_end] ^= 4;
+        fs::write(folder.join(table), bytes).expect("room on the disk");
+        says("damaged");
+        fs::write(folder.join(table), whole).expect("room on the disk");
+    }
+    place.assert_ends_alike("lacking", &[]);
+}
+
+#[test]
 fn grains_that_have_no_room_in_memory_are_refused_before_they_are_placed() {
     let room = tempfile::tempdir().expect("a temporary folder");
     let scene = "[box]\nwidth = 20000.0\nheight = \"fit\"\n[grains.square]\nradius = 1.0\n\

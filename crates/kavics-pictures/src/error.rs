@@ -55,6 +55,17 @@ pub enum PictureError {
         /// What could have been meant.
         hint: String,
     },
+    /// Displacements are drawn so large that nothing of the assembly is left.
+    #[error(
+        "displacements {times:e} times as large as they are leave no picture: grains would be drawn {extents:.1e} times \
+         the extent of the assembly away; a smaller scale is needed"
+    )]
+    TooFar {
+        /// How many times as large as they are.
+        times: f64,
+        /// The longest, in extents of the assembly.
+        extents: f64,
+    },
     /// A picture of pixels is too large, or has no pixel.
     #[error(
         "a picture of {width} x {height} pixels cannot be made; at least 1, at most {most} each way"
@@ -106,6 +117,7 @@ impl PictureError {
             Self::NotRecorded { .. }
             | Self::NoColumn { .. }
             | Self::NoAction { .. }
+            | Self::TooFar { .. }
             | Self::TooLarge { .. } => true,
             Self::Results(_) | Self::NoContainer { .. } | Self::NotThere { .. } => false,
         }

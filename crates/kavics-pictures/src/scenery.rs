@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use kavics::assembly::{Contact, Grain, Partner};
+use kavics::assembly::{Contact, Grain, Partner, extents};
 use kavics::equilibrium::{ContactState, State};
 use kavics::geometry::Vector;
 use kavics::ids::{ContactId, GrainId, Id, SideId};
@@ -36,6 +36,9 @@ pub(crate) struct Scenery<'a> {
     times: f64,
 }
 
+/// How far a grain is drawn from where it was before loading, at most, in extents of the assembly.
+const FARTHEST: f64 = 100.0;
+
 impl<'a> Scenery<'a> {
     /// The assembly at a recorded load step, displacements so many times as large as they are.
     pub fn at(layout: &'a Layout, step: usize, times: f64) -> Result<Self, PictureError> {
@@ -54,7 +57,26 @@ impl<'a> Scenery<'a> {
         };
         let grains = layout.assembly.grains.ids();
         scenery.centres = grains.map(|grain| scenery.centre(grain)).collect();
+        scenery.check_distances()?;
         Ok(scenery)
+    }
+
+    /// Checks that displacements which are drawn larger than they are leave a picture of the assembly.
+    fn check_distances(&self) -> Result<(), PictureError> {
+        let grains = self.grains();
+        let [low, high] = extents(grains.iter().map(|grain| grain.centre));
+        let radii = grains.iter().map(|grain| grain.radius);
+        let size = (high - low).length().max(radii.fold(0.0, f64::max));
+        let ways = grains.iter().zip(&self.centres);
+        let ways = ways.map(|(grain, &centre)| (centre - grain.centre).length());
+        let longest = ways.fold(0.0, f64::max);
+        if self.times.abs() <= 1.0 || longest <= FARTHEST * size {
+            return Ok(());
+        }
+        Err(PictureError::TooFar {
+            times: self.times,
+            extents: longest / size,
+        })
     }
 
     pub fn grains(&self) -> &[Grain] {

@@ -16,11 +16,13 @@ use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_writer::{ArrowColumnChunk, ArrowColumnWriter, compute_leaves};
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::schema::types::ColumnPath;
 use rayon::prelude::*;
 
 use crate::ResultsError;
+use crate::checksums::{KEY, Summed, WRITER};
 use crate::column::{Column, Read};
 
 /// Rows that are encoded together: few enough that long tables need little memory beside their file.
@@ -37,6 +39,7 @@ fn encode<R: Sync, F: Fn(usize) -> ArrayRef + Sync>(
 ) -> Result<(), ResultsError> {
     let schema = schema(columns);
     let write = || {
+        let to = Summed::new(to);
         let writer = ArrowWriter::try_new(to, Arc::clone(&schema), Some(properties(columns)))?;
         let (mut file, factory) = writer.into_serialized_writer()?;
         for (number, first) in (0..count).step_by(ROWS_A_GROUP).enumerate() {
@@ -49,9 +52,12 @@ fn encode<R: Sync, F: Fn(usize) -> ArrayRef + Sync>(
             }
             group.close()?;
         }
-        file.close().map(|_| ())
+        file.flush()?;
+        let checksums = file.inner_mut().seal();
+        file.append_key_value_metadata(KeyValue::new(KEY.to_owned(), checksums));
+        Ok(file.into_inner()?.finish()?)
     };
-    write().map_err(ResultsError::table(path))
+    write().map_err(ResultsError::table::<ParquetError>(path))
 }
 
 /// The columns of some rows, each encoded.
@@ -118,6 +124,7 @@ pub(crate) fn array_after<R>(column: &Column<R>, first: &dyn Array, rows: &[R]) 
 /// Words repeat and are kept in a dictionary; numbers hardly ever do.
 fn properties<R>(columns: &[Column<R>]) -> WriterProperties {
     let mut properties = WriterProperties::builder()
+        .set_created_by(format!("{WRITER}{}", env!("CARGO_PKG_VERSION")))
         .set_compression(Compression::SNAPPY)
         .set_dictionary_enabled(false)
         .set_max_row_group_row_count(Some(ROWS_A_GROUP));

@@ -113,6 +113,14 @@ pub enum ResultsError {
         /// Rows that the scene makes.
         expected: usize,
     },
+    /// A table stands where that of another load step or run belongs.
+    #[error("{}: {reason}; it was put there from elsewhere", path.display())]
+    Misplaced {
+        /// The table.
+        path: PathBuf,
+        /// What tells so.
+        reason: String,
+    },
     /// The run to go on with was of another scene.
     #[error(
         "{}: the scene has changed since the run began, at line {line} of its scene.toml\n  then: {ran}\n  now:  {now}\n\
@@ -141,10 +149,10 @@ pub enum ResultsError {
         /// The version that began it.
         version: String,
     },
-    /// A checkpoint is damaged.
+    /// A checkpoint or a table is damaged.
     #[error("{}: {reason}", path.display())]
     Damaged {
-        /// The checkpoint.
+        /// The file.
         path: PathBuf,
         /// What is wrong with it.
         reason: String,
@@ -221,6 +229,7 @@ impl ResultsError {
         match self {
             Self::Unreadable { source, .. } | Self::Unwritable { source, .. } => source.to_string(),
             Self::Table { source, .. } => format!("not a Parquet file: {source}"),
+            Self::Damaged { reason, .. } => reason.clone(),
             Self::NoColumn { column, .. } => format!("no column is called \"{column}\""),
             Self::WrongColumn { column, wanted, .. } => {
                 format!("column \"{column}\" does not hold {wanted}")

@@ -1,6 +1,6 @@
 //! Reading a results folder back, by column name.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,16 +11,16 @@ use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrowPrimitiveType, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, Schema, SchemaRef};
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::errors::ParquetError;
 use serde::Deserialize;
 
 use crate::ResultsError;
 use crate::chosen_columns::unchanging;
 use crate::guard::guarded;
-use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
+use crate::record::{RunRecord, SCHEMA_VERSION};
 use crate::room::{CRACKS, MODES, RECORDED, VOIDS};
-use crate::table_file;
+use crate::table_file::TableFile;
+use crate::table_place;
 
 /// A table read back, column by column.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ impl Columns {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read_some(path: &Path, names: Option<&[&str]>) -> Result<Self, ResultsError> {
-        Self::read_by(path, names, |builder| builder)
+        Self::read_rows(path, names, 0..usize::MAX)
     }
 
     /// Reads some rows of the named columns, or of all, as far as the table reaches.
@@ -59,36 +59,34 @@ impl Columns {
         names: Option<&[&str]>,
         rows: Range<usize>,
     ) -> Result<Self, ResultsError> {
-        Self::read_by(path, names, |builder| {
-            builder.with_offset(rows.start).with_limit(rows.len())
-        })
+        Self::of_file(TableFile::open(path)?, names, &rows)
     }
 
-    fn read_by(
-        path: &Path,
+    /// Some rows of the named columns of a file that is open.
+    fn of_file(
+        mut table: TableFile,
         names: Option<&[&str]>,
-        choose: impl FnOnce(
-            ParquetRecordBatchReaderBuilder<File>,
-        ) -> ParquetRecordBatchReaderBuilder<File>,
+        rows: &Range<usize>,
     ) -> Result<Self, ResultsError> {
-        let builder = table_file::open(path)?;
         let mask = names.map_or_else(ProjectionMask::all, |names| {
-            ProjectionMask::columns(builder.parquet_schema(), names.iter().copied())
+            ProjectionMask::columns(table.builder.parquet_schema(), names.iter().copied())
         });
-        let builder = choose(builder.with_projection(mask)).with_batch_size(1 << 16);
+        table.check_columns(&mask, rows)?;
+        let path = table.path;
+        let builder = table.builder.with_projection(mask).with_batch_size(1 << 16);
+        let builder = builder.with_offset(rows.start).with_limit(rows.len());
         let read = guarded(|| {
             let reader = builder.build()?;
             let schema = reader.schema();
             let batches: Result<Vec<RecordBatch>, _> = reader.collect();
             Ok((schema, batches?))
         });
-        let (schema, batches) = read.map_err(ResultsError::table::<ParquetError>(path))?;
-        let rows = batches.iter().map(RecordBatch::num_rows).sum();
+        let (schema, batches) = read.map_err(ResultsError::table::<ParquetError>(&path))?;
         Ok(Self {
-            path: path.to_owned(),
             schema,
+            rows: batches.iter().map(RecordBatch::num_rows).sum(),
             batches,
-            rows,
+            path,
             unchanging: None,
         })
     }
@@ -241,7 +239,7 @@ impl TableHead {
     /// # Errors
     /// A file that cannot be read, or holds something else.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
-        let builder = table_file::open(path)?;
+        let builder = TableFile::open(path)?.builder;
         Ok(Self {
             schema: Arc::clone(builder.schema()),
             rows: builder.metadata().file_metadata().num_rows() as usize,
@@ -421,49 +419,55 @@ impl ResultsFolder {
         self.recorded_or_none(MODES, step)
     }
 
-    /// The recorded load steps in order, 0 first.
+    /// Some rows of the named columns, or of all, of a table at a recorded load step.
     ///
     /// # Errors
-    /// A folder that cannot be listed.
-    pub fn recorded_steps(&self) -> Result<Vec<usize>, ResultsError> {
-        let folder = self.path.join("grains");
-        let unreadable = |source| ResultsError::unreadable(&folder)(source);
-        let mut steps = Vec::new();
-        for entry in fs::read_dir(&folder).map_err(unreadable)? {
-            let name = entry.map_err(unreadable)?.file_name();
-            let step: Option<usize> = name
-                .to_str()
-                .and_then(|name| name.strip_suffix(".parquet"))
-                .and_then(|number| number.parse().ok());
-            steps.extend(step);
-        }
-        steps.sort_unstable();
-        Ok(steps)
+    /// A table that cannot be read, or is of another load step or run.
+    pub fn table(
+        &self,
+        table: &str,
+        step: usize,
+        names: Option<&[&str]>,
+        rows: Range<usize>,
+    ) -> Result<Columns, ResultsError> {
+        let file = TableFile::open(&self.table_path(table, step))?;
+        self.check_place(&file, table, step)?;
+        Columns::of_file(file, names, &rows)
     }
 
-    /// Checks that no recorded table of a run that has ended is missing: the state before loading and the last load step are always
-    /// recorded, and each recorded load step has grains, contacts and sides.
-    ///
-    /// # Errors
-    /// A table that is missing; tables that cannot be read.
-    pub fn check_whole(&self) -> Result<(), ResultsError> {
-        if self.record()?.state == RunState::Running {
+    /// Checks a table at a recorded load step that was written: all of it before loading, which everything is drawn on and
+    /// measured by, else its footer.
+    pub(crate) fn check_table(&self, table: &str, step: usize) -> Result<(), ResultsError> {
+        let path = self.table_path(table, step);
+        if !path.is_file() {
+            return Err(ResultsError::Missing { path });
+        }
+        let mut file = TableFile::open(&path)?;
+        self.check_place(&file, table, step)?;
+        if step > 0 {
             return Ok(());
         }
-        let mut wanted = self.recorded_steps()?;
-        let last = self.steps()?.integers("step")?.last().copied().flatten();
-        if let Some(last) = last.and_then(|step| usize::try_from(step).ok()) {
-            wanted.extend([0, last]);
+        file.check_columns(&ProjectionMask::all(), &(0..usize::MAX))
+    }
+
+    /// Whether a table is that of its load step and of this run.
+    fn check_place(&self, file: &TableFile, table: &str, step: usize) -> Result<(), ResultsError> {
+        let (path, metadata) = (&file.path, file.builder.metadata());
+        table_place::check_step(path, metadata, step)?;
+        if !RECORDED.contains(&table) {
+            return Ok(());
         }
-        for step in wanted {
-            for table in RECORDED {
-                let path = recorded_path(&self.path, table, step);
-                if !path.is_file() {
-                    return Err(ResultsError::Missing { path });
-                }
-            }
+        if step == 0 {
+            let record = self.record()?;
+            return match table {
+                "grains" => table_place::check_rows(path, metadata, record.grains),
+                "contacts" => table_place::check_rows(path, metadata, record.contacts),
+                _ => Ok(()),
+            };
         }
-        Ok(())
+        let before = TableFile::open(&self.table_path(table, 0))?;
+        self.check_place(&before, table, 0)?;
+        table_place::check_alike(path, table, metadata, before.builder.metadata())
     }
 
     fn recorded(&self, table: &str, step: usize) -> Result<Columns, ResultsError> {
@@ -477,13 +481,12 @@ impl ResultsFolder {
         step: usize,
         names: Option<&[&str]>,
     ) -> Result<Columns, ResultsError> {
-        let mut columns = Columns::read_some(&recorded_path(&self.path, table, step), names)?;
+        let mut columns = self.table(table, step, names, 0..usize::MAX)?;
         let known = columns.names();
         let mut missing = unchanging(table).to_vec();
         missing.retain(|name| !known.contains(name) && names.is_none_or(|n| n.contains(name)));
         if step > 0 && !missing.is_empty() {
-            let before = recorded_path(&self.path, table, 0);
-            let unchanging = Columns::read_some(&before, Some(&missing))?;
+            let unchanging = self.table(table, 0, Some(&missing), 0..usize::MAX)?;
             let whole = unchanging.len() == columns.len();
             columns.unchanging = whole.then(|| Box::new(unchanging));
         }

@@ -8,6 +8,7 @@ mod apart;
 mod checkpoint;
 mod checkpoint_file;
 mod checkpoint_frame;
+mod checksums;
 mod chosen_columns;
 mod column;
 mod contacts;
@@ -28,6 +29,7 @@ mod modes;
 mod packing_record;
 mod record;
 mod recorded;
+mod recorded_tables;
 mod results;
 mod resume;
 mod room;
@@ -35,6 +37,7 @@ mod sides;
 mod stability;
 mod steps;
 mod table_file;
+mod table_place;
 mod voids;
 mod warning;
 
@@ -59,8 +62,11 @@ pub use modes::ModeRow;
 pub use packing_record::{CurveRecord, MassRecord, PackingRecord};
 pub use record::{RunRecord, RunState, SCHEMA_VERSION};
 pub use recorded::Recorded;
+pub use recorded_tables::RecordedTables;
 pub use results::{Options, Results};
-pub use room::{check_apart, check_own, check_room, clear_unfinished, clear_unpublished};
+pub use room::{
+    check_apart, check_own, check_room, clear_unfinished, clear_unpublished, has_unpublished,
+};
 pub use sides::SideRow;
 pub use steps::{StepRow, step_columns, write_steps, write_steps_csv};
 pub use voids::VoidRow;

@@ -1,6 +1,7 @@
 //! One run at a time writes a results folder.
 
 use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::ResultsError;
@@ -9,6 +10,9 @@ use crate::checkpoint::CHECKPOINT;
 /// The file in `checkpoint/` that is locked. It is always empty: the system knows who holds it, and forgets it when the
 /// process ends, however it ends.
 pub(crate) const LOCK: &str = "lock";
+
+/// How often the file is made where it vanishes at once.
+const ATTEMPTS: usize = 100;
 
 /// Keeps other runs out of a results folder until it is dropped. Readers need no lock.
 #[derive(Debug)]
@@ -26,11 +30,10 @@ impl Lock {
     /// Another run writes there; a folder in which no file can be made.
     pub fn take(folder: &Path) -> Result<Self, ResultsError> {
         fs::create_dir_all(folder).map_err(ResultsError::unwritable(folder))?;
+        let place = folder.join(CHECKPOINT);
+        let path = place.join(LOCK);
         loop {
-            let place = folder.join(CHECKPOINT);
-            fs::create_dir_all(&place).map_err(ResultsError::unwritable(&place))?;
-            let path = place.join(LOCK);
-            let file = File::create(&path).map_err(ResultsError::unwritable(&path))?;
+            let file = made(&place, &path)?;
             let unlocked = try_lock(&file, folder)?;
             // Whoever held it before may have taken the file away since it was opened here.
             if unlocked.is_some() || is_at(&file, &path) {
@@ -74,6 +77,19 @@ impl Drop for Lock {
     }
 }
 
+/// The file of the lock, and the folder that it is in. Whoever held it before may take both away meanwhile.
+fn made(place: &Path, path: &Path) -> Result<File, ResultsError> {
+    let make = || fs::create_dir_all(place).and_then(|()| File::create(path));
+    let is_gone = |error: &std::io::Error| {
+        matches!(error.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists)
+    };
+    let mut attempts = (1..ATTEMPTS).map(|_| make());
+    let made = attempts.find(|made| made.as_ref().err().is_none_or(|error| !is_gone(error)));
+    let unwritable = if place.is_dir() { path } else { place };
+    made.unwrap_or_else(make)
+        .map_err(ResultsError::unwritable(unwritable))
+}
+
 /// Locks a file; answers why it cannot be locked by anybody.
 fn try_lock(file: &File, folder: &Path) -> Result<Option<String>, ResultsError> {
     match file.try_lock() {
@@ -102,7 +118,11 @@ fn is_at(_: &File, path: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::Ordering::SeqCst;
+
     use super::*;
+    use crate::clear_unfinished;
 
     #[test]
     fn a_folder_is_locked_until_the_lock_is_dropped() {
@@ -118,6 +138,50 @@ mod tests {
         drop(lock);
         assert!(!folder.join(CHECKPOINT).exists());
         Lock::take(&folder).expect("nobody is there any more");
+    }
+
+    /// A run that finds nothing to go on from clears the folder while it holds it.
+    #[test]
+    fn a_folder_that_is_cleared_stays_locked() {
+        let place = tempfile::tempdir().expect("a temporary folder");
+        let folder = place.path();
+        let _lock = Lock::take(folder).expect("nobody is there");
+        let generation = folder
+            .join(CHECKPOINT)
+            .join("000001-0123456789abcdef.arrow");
+        fs::write(&generation, "").expect("room");
+        clear_unfinished(folder).expect("files of a run");
+        assert!(!generation.exists());
+        let refused = Lock::take(folder).expect_err("a refusal");
+        assert!(matches!(refused, ResultsError::Locked { .. }), "{refused}");
+    }
+
+    /// Each holds the folder alone, though it takes the file away when it leaves.
+    #[test]
+    fn many_that_come_and_go_never_hold_a_folder_together() {
+        let place = tempfile::tempdir().expect("a temporary folder");
+        let inside = AtomicUsize::new(0);
+        let held = AtomicUsize::new(0);
+        let come_and_go = || {
+            for _ in 0..300 {
+                match Lock::take(place.path()) {
+                    Ok(_lock) => {
+                        assert_eq!(inside.fetch_add(1, SeqCst), 0);
+                        held.fetch_add(1, SeqCst);
+                        inside.fetch_sub(1, SeqCst);
+                    }
+                    Err(refused) => {
+                        assert!(matches!(refused, ResultsError::Locked { .. }), "{refused}");
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(come_and_go);
+            }
+        });
+        assert!(held.into_inner() > 0);
     }
 
     #[test]

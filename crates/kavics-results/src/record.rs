@@ -4,6 +4,7 @@ use kavics::warning::WarningKind;
 use serde::{Deserialize, Serialize};
 
 use crate::packing_record::PackingRecord;
+use crate::recorded_tables::RecordedTables;
 
 /// Version of the tables; rises when a column changes its meaning.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -74,4 +75,7 @@ pub struct RunRecord {
     /// Container and wanted sieve curve; none in the results of versions that did not keep them.
     #[serde(default)]
     pub packing: Option<PackingRecord>,
+    /// What is recorded of the load steps; none in the results of versions that did not tell.
+    #[serde(default)]
+    pub recorded: Option<RecordedTables>,
 }

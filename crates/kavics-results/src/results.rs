@@ -26,7 +26,8 @@ use crate::log::Log;
 use crate::modes::{mode_columns, mode_rows};
 use crate::packing_record::PackingRecord;
 use crate::record::{RunRecord, RunState, SCHEMA_VERSION};
-use crate::room::{CRACKS, MODES, RECORDED, VOIDS, make_room};
+use crate::recorded_tables::RecordedTables;
+use crate::room::{CRACKS, MODES, VOIDS, make_room};
 use crate::sides::{SideRow, side_columns};
 use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
@@ -126,13 +127,7 @@ impl<'a> Results<'a> {
 
     /// Makes the folders of the tables that are recorded.
     pub(crate) fn make_folders(&self) -> Result<(), ResultsError> {
-        let scene = self.scene;
-        let asked_for = [
-            scene.record_voids.then_some(VOIDS),
-            scene.record_cracks.then_some(CRACKS),
-            (scene.settings.modes > 0).then_some(MODES),
-        ];
-        for name in RECORDED.into_iter().chain(asked_for.into_iter().flatten()) {
+        for name in RecordedTables::of(self.scene).tables {
             let path = self.folder.join(name);
             fs::create_dir_all(&path).map_err(ResultsError::unwritable(&path))?;
         }
@@ -524,6 +519,7 @@ fn record(scene: &Scene, options: Options) -> RunRecord {
         failure: None,
         warnings: scene.warnings.clone(),
         packing: Some(PackingRecord::of(scene)),
+        recorded: Some(RecordedTables::of(scene)),
     }
 }
 

@@ -149,12 +149,24 @@ pub(crate) fn clear_leftovers(
 /// # Errors
 /// Files that cannot be removed.
 pub fn clear_unpublished(folder: &Path) -> Result<(), ResultsError> {
+    remove(unpublished(folder)?)
+}
+
+/// Whether there is something for [`clear_unpublished`] to take away.
+///
+/// # Errors
+/// A folder that cannot be listed.
+pub fn has_unpublished(folder: &Path) -> Result<bool, ResultsError> {
+    unpublished(folder).map(|left| !left.is_empty())
+}
+
+fn unpublished(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
     let is_left = |entry: &DirEntry| {
         let name = entry.file_name().to_string_lossy().into_owned();
         name.starts_with('.') && is_file_of_a_run(&name)
     };
     let left = entries(folder)?.into_iter().filter(is_left);
-    remove(left.map(|entry| entry.path()).collect())
+    Ok(left.map(|entry| entry.path()).collect())
 }
 
 fn remove(mut files: Vec<PathBuf>) -> Result<(), ResultsError> {

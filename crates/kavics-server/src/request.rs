@@ -1,5 +1,7 @@
 //! What a request asks for, and whether it is one that is answered.
 
+use std::collections::HashSet;
+
 use axum::http::header::HOST;
 use axum::http::request::Parts;
 use axum::http::{Method, StatusCode};
@@ -33,14 +35,16 @@ pub(crate) fn check(head: &Parts, port: u16) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The columns that a query asks for: `columns=a,b`; none where it names none.
+/// The columns that a query asks for, each once: `columns=a,b`; none where it names none.
 pub(crate) fn columns(query: Option<&str>) -> Option<Vec<String>> {
     let wanted = query?
         .split('&')
         .find_map(|part| part.strip_prefix("columns="))?;
     // Names of columns are plain; a comma may be escaped.
     let wanted = wanted.replace("%2C", ",").replace("%2c", ",");
-    let names = wanted.split(',').filter(|name| !name.is_empty());
+    let mut known = HashSet::new();
+    let names = wanted.split(',');
+    let names = names.filter(|name| !name.is_empty() && known.insert(*name));
     Some(names.map(str::to_owned).collect())
 }
 
@@ -53,6 +57,7 @@ mod tests {
         let three = Some(vec!["x".to_owned(), "y".to_owned(), "ux".to_owned()]);
         assert_eq!(columns(Some("columns=x,y,ux")), three);
         assert_eq!(columns(Some("change=4&columns=x%2Cy%2cux")), three);
+        assert_eq!(columns(Some("columns=x,y,x,ux,y,x")), three);
         assert_eq!(columns(Some("change=4")), None);
         assert_eq!(columns(None), None);
     }

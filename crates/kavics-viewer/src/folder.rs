@@ -40,11 +40,12 @@ impl PageFolder {
     /// The results folder at `path`.
     ///
     /// # Errors
-    /// A folder without `run.json`.
+    /// A folder without `run.json`, or without a table that was recorded.
     pub fn open(path: &Path) -> Result<Self, PageError> {
         let results = ResultsFolder::open(path)?;
         // Refuses tables of a later version.
         results.record()?;
+        results.check_whole()?;
         let root = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         Ok(Self {
             results,
@@ -231,7 +232,10 @@ impl PageFolder {
             Some(wanted) => wanted.iter().map(|&name| name.to_owned()).collect(),
             None => all_names(table, &TableHead::read(&path)?),
         };
-        let read = Columns::read_rows(&path, Some(&sources(table, &wanted)), 0..most)?;
+        let names = sources(table, &wanted);
+        let read = self
+            .results
+            .table(table.name(), step, Some(&names), 0..most)?;
         let breaks = if wanted.iter().any(|name| name == Made::BrokeAt.name()) {
             self.breaks(step)?
         } else {
@@ -250,7 +254,9 @@ impl PageFolder {
     }
 
     fn row(&self, table: StepTable, step: usize, number: usize) -> Result<Content, PageError> {
-        let read = Columns::read_rows(&self.step_path(table, step)?, None, number..number + 1)?;
+        self.step_path(table, step)?;
+        let rows = number..number.saturating_add(1);
+        let read = self.results.table(table.name(), step, None, rows)?;
         if read.is_empty() {
             return Err(PageError::NoRow {
                 table: table.name().to_owned(),
@@ -272,11 +278,10 @@ impl PageFolder {
 
     /// The principal directions at a load step.
     pub(crate) fn crosses(&self, step: usize) -> Result<(Vec<PageColumn>, usize), PageError> {
-        let read = |table, names: &[&str]| -> Result<Columns, PageError> {
-            Ok(Columns::read_some(
-                &self.step_path(table, step)?,
-                Some(names),
-            )?)
+        let read = |table: StepTable, names: &[&str]| -> Result<Columns, PageError> {
+            self.step_path(table, step)?;
+            let whole = 0..usize::MAX;
+            Ok(self.results.table(table.name(), step, Some(names), whole)?)
         };
         let grains = read(StepTable::Grains, &crosses::OF_GRAINS)?;
         let contacts = read(StepTable::Contacts, &crosses::OF_CONTACTS)?;

@@ -95,25 +95,22 @@ pub fn run(file: &SceneFile, folder: &Path, checker: &mut Checker) -> Option<Run
 
 fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, Breakage)> {
     let default = Settings::default();
-    let number = Dimension::Number;
     let tolerance = file.tolerance.as_ref();
     let tolerance = self::tolerance(tolerance, default.tolerance, checker);
-    let ties = file.tie_tolerance.as_ref();
-    let ties = checker.number_or(
-        default.tie_tolerance,
-        ties,
-        "tie_tolerance",
-        number,
-        Bound::NonNegative,
-    );
-    let work = file.work_tolerance.as_ref();
-    let work = checker.number_or(
-        default.work_tolerance,
-        work,
-        "work_tolerance",
-        number,
-        Bound::Positive,
-    );
+    let ties = Share {
+        key: "tie_tolerance",
+        number: file.tie_tolerance.as_ref(),
+        default: default.tie_tolerance,
+        bound: Bound::NonNegative,
+    };
+    let ties = share(ties, MOST_TIES, checker);
+    let work = Share {
+        key: "work_tolerance",
+        number: file.work_tolerance.as_ref(),
+        default: default.work_tolerance,
+        bound: Bound::Positive,
+    };
+    let work = share(work, MOST_WORK, checker);
     let iteration = file
         .iteration
         .as_ref()
@@ -177,6 +174,33 @@ fn tolerance(number: Option<&Number>, default: f64, checker: &mut Checker) -> Op
         _ => format!("expected at most {MOST_TOLERANCE:e}; what is farther off is no equilibrium"),
     };
     let problem = format!("`tolerance` cannot be {value:e}");
+    checker.push(Problem::at(&number.span, problem, expected));
+    None
+}
+
+/// Largest share of the utilisation within which bonds break together: those farther from their limits hold.
+const MOST_TIES: f64 = 0.1;
+/// Largest share of its work by which the energies of a load step may be wrong: all of it.
+const MOST_WORK: f64 = 1.0;
+
+/// A share that the scene gives, or may.
+struct Share<'a> {
+    key: &'static str,
+    number: Option<&'a Number>,
+    default: f64,
+    bound: Bound,
+}
+
+fn share(share: Share<'_>, most: f64, checker: &mut Checker) -> Option<f64> {
+    let Some(number) = share.number else {
+        return Some(share.default);
+    };
+    let value = checker.number(number, share.key, Dimension::Number, share.bound)?;
+    if value <= most {
+        return Some(value);
+    }
+    let problem = format!("`{}` cannot be {value:?}", share.key);
+    let expected = format!("expected at most {most}; it is a share");
     checker.push(Problem::at(&number.span, problem, expected));
     None
 }

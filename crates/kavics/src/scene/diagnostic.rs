@@ -23,10 +23,10 @@ impl Problem {
     /// A mistake at a place, with what is wrong there.
     pub fn at(span: &Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Self {
         Self {
-            message: message.into(),
+            message: brief(&message.into()),
             marks: vec![Mark {
                 span: span.clone(),
-                label: label.into(),
+                label: brief(&label.into()),
             }],
             help: Vec::new(),
         }
@@ -36,14 +36,14 @@ impl Problem {
     pub fn and(mut self, span: &Range<usize>, label: impl Into<String>) -> Self {
         self.marks.push(Mark {
             span: span.clone(),
-            label: label.into(),
+            label: brief(&label.into()),
         });
         self
     }
 
     /// The same mistake with what was expected.
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help.push(help.into());
+        self.help.push(brief(&help.into()));
         self
     }
 
@@ -75,6 +75,45 @@ impl Problem {
         let renderer = Renderer::plain().decor_style(DecorStyle::Ascii);
         renderer.render(&[group])
     }
+}
+
+/// Characters of a quote that are shown, at its beginning and at its end.
+const QUOTED: [usize; 2] = [40, 20];
+
+/// A sentence in which long quotes are cut in their middle.
+fn brief(sentence: &str) -> String {
+    let mut open = None;
+    let is_end = |character: char| match open {
+        None if matches!(character, '`' | '"') => {
+            open = Some(character);
+            true
+        }
+        Some(begin) if begin == character => {
+            open = None;
+            true
+        }
+        _ => false,
+    };
+    let parts = sentence.split_inclusive(is_end).enumerate();
+    let quoted = |(number, part): (usize, &str)| match number % 2 {
+        0 => part.to_owned(),
+        _ => cut(part),
+    };
+    parts.map(quoted).collect()
+}
+
+fn cut(quote: &str) -> String {
+    let [first, last] = QUOTED;
+    let characters: Vec<char> = quote.chars().collect();
+    if characters.len() <= first + last + 1 {
+        return quote.to_owned();
+    }
+    let ends = [
+        &characters[..first],
+        &['…'],
+        &characters[characters.len() - last - 1..],
+    ];
+    ends.concat().into_iter().collect()
 }
 
 /// A span cut to what exists of the text, and to its first line.
@@ -274,6 +313,17 @@ mod tests {
         assert_eq!(short(-1_234.567_89), "-1234.57");
         assert_eq!(short(2.5e-7), "2.5e-7");
         assert_eq!(short(0.0), "0");
+    }
+
+    #[test]
+    fn only_long_quotes_are_cut() {
+        let prose = "x".repeat(90);
+        let key = "k".repeat(1_000_000);
+        let short = format!("{prose} `solver = \"auto\"` {prose}");
+        assert_eq!(brief(&short), short);
+        let long = format!("{prose} `{key}` {prose}");
+        let (begin, end) = ("k".repeat(40), "k".repeat(20));
+        assert_eq!(brief(&long), format!("{prose} `{begin}…{end}` {prose}"));
     }
 
     #[test]

@@ -224,9 +224,9 @@ pub struct EquilibriumFile {
     pub iteration: Option<Placed<String>>,
     /// "worst-first" (when absent), "simultaneous" or "event-driven".
     pub breakage: Option<Placed<String>>,
-    /// Relative difference of utilisations below which contacts break together; 1e-9 when absent.
+    /// Relative difference of utilisations below which contacts break together, up to 0.1; 1e-9 when absent.
     pub tie_tolerance: Option<Number>,
-    /// Bound on the error of work and energies in a load step, relative to its work; 1e-6 when absent.
+    /// Bound on the error of work and energies in a load step, relative to its work, up to 1; 1e-6 when absent.
     pub work_tolerance: Option<Number>,
     /// "auto" (when absent), "direct" or "iterative".
     pub solver: Option<Placed<String>>,

@@ -15,6 +15,9 @@ pub fn read_csv(path: &Path) -> Result<Vec<[f64; 3]>, String> {
         .from_path(path)
         .map_err(|error| format!("cannot be read: {error}"))?;
     let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    if header.is_empty() {
+        return Err("it is empty; expected columns `x`, `y` and `radius`".to_owned());
+    }
     let mut places = [0; 3];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
         let found = header.iter().position(|name| name == column);
