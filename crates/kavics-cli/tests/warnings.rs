@@ -222,6 +222,12 @@ fn large_displacements() {
 }
 
 #[test]
+fn load_held() {
+    let on_a_support = ["load.0.grains={ ids = [0] }"];
+    run(THREE, "", &on_a_support).expect(&[WarningKind::LoadHeld]);
+}
+
+#[test]
 fn load_uncovered() {
     let edge = "[[load]]\nname = \"edge\"\nedge = \"top\"\nnormal = [-0.001, -0.001]\n";
     let set = ["box.width=6.0", "stage.0.apply=[\"edge\"]"];

@@ -43,10 +43,9 @@ struct Part {
     size: f64,
 }
 
-/// The factors of all actions, kept while stages drive some of them.
+/// What each action acts on.
 #[derive(Debug)]
 pub(crate) struct Actions {
-    factors: Vec<f64>,
     loads: Vec<Vec<Part>>,
     moves: Vec<Vec<Part>>,
 }
@@ -55,7 +54,6 @@ impl Actions {
     pub(crate) fn new(program: &Program) -> Self {
         let count = program.actions.len();
         let mut actions = Self {
-            factors: vec![0.0; count],
             loads: vec![Vec::new(); count],
             moves: vec![Vec::new(); count],
         };
@@ -80,34 +78,17 @@ impl Actions {
         actions
     }
 
-    /// The factors so far.
-    pub(crate) fn factors(&self) -> &[f64] {
-        &self.factors
-    }
-
-    /// The same actions at given factors; none for another number of actions.
-    pub(crate) fn at(self, factors: &[f64]) -> Option<Self> {
-        (factors.len() == self.factors.len()).then(|| Self {
-            factors: factors.to_vec(),
-            ..self
-        })
-    }
-
     /// The rows of the load step that `equilibrium` ends.
-    pub(crate) fn rows(&mut self, program: &Program, equilibrium: &Equilibrium) -> Vec<ActionRow> {
-        if let (1.., Some(stage)) = (equilibrium.step, program.stages.get(equilibrium.stage)) {
-            for &action in &stage.actions {
-                self.factors[action] = equilibrium.load_factor;
-            }
-        }
+    pub(crate) fn rows(&self, program: &Program, equilibrium: &Equilibrium) -> Vec<ActionRow> {
         let named = program.actions.iter().enumerate();
         named
             .map(|(action, named)| {
-                let [displacement, force] = self.conjugates(action, equilibrium);
+                let factor = equilibrium.factors.get(action).copied().unwrap_or_default();
+                let [displacement, force] = self.conjugates(action, factor, equilibrium);
                 ActionRow {
                     step: equilibrium.step,
                     name: named.name.clone(),
-                    factor: self.factors[action],
+                    factor,
                     displacement,
                     force,
                 }
@@ -115,8 +96,7 @@ impl Actions {
             .collect()
     }
 
-    fn conjugates(&self, action: usize, equilibrium: &Equilibrium) -> [f64; 2] {
-        let factor = self.factors[action];
+    fn conjugates(&self, action: usize, factor: f64, equilibrium: &Equilibrium) -> [f64; 2] {
         let (loads, moves) = (&self.loads[action], &self.moves[action]);
         if !loads.is_empty() {
             let whole: f64 = sizes(loads).sum();

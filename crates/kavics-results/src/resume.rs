@@ -10,7 +10,7 @@ use kavics::equilibrium::{Memory, MemoryColumn};
 use kavics::scene::Scene;
 
 use crate::ResultsError;
-use crate::actions::{Actions, action_columns};
+use crate::actions::action_columns;
 use crate::checkpoint::{self, CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, assembly_hash};
 use crate::column::Column;
 use crate::encode::{array, array_after, schema};
@@ -32,7 +32,6 @@ const LOST: u32 = 25;
 const MOST_LOST: Duration = Duration::from_secs(2);
 
 /// What results remember beside their rows.
-const ACTION_FACTORS: &str = "results.action_factors";
 const WARNINGS: &str = "results.warnings";
 const WITHOUT_MODULI: &str = "results.without_moduli";
 
@@ -60,10 +59,6 @@ impl<'a> Results<'a> {
             let table = Columns::of(&folder.join(checkpoint::CHECKPOINT), steps.clone());
             results.steps = rows_with_stress(&table)?;
         }
-        let damaged = || damaged(folder, "its tables are not whole");
-        results.actions = Actions::new(&scene.program)
-            .at(numbers(&checkpoint.memory, ACTION_FACTORS))
-            .ok_or_else(damaged)?;
         results.solver_warnings = SolverWarnings::of_numbers(numbers(&checkpoint.memory, WARNINGS));
         let without_moduli = numbers(&checkpoint.memory, WITHOUT_MODULI).iter();
         results.without_moduli = without_moduli.map(|&step| step as usize).collect();
@@ -105,12 +100,10 @@ impl<'a> Results<'a> {
     /// Files that cannot be written.
     pub fn checkpoint(&mut self, mut memory: Memory) -> Result<(), ResultsError> {
         let start = Instant::now();
-        let factors = self.actions.factors().to_vec();
         let mut keep = |name: &str, values| {
             let column = MemoryColumn::Numbers(values);
             memory.columns.insert(name.to_owned(), column);
         };
-        keep(ACTION_FACTORS, factors);
         keep(WARNINGS, self.solver_warnings.numbers());
         let without_moduli = self.without_moduli.iter();
         keep(

@@ -20,6 +20,8 @@ pub enum WarningKind {
     FloppyModesHeld,
     /// Displacements are not small against the branch lengths.
     LargeDisplacements,
+    /// A load acts on nothing but held or moved freedoms.
+    LoadHeld,
     /// No grain is met over a part of a loaded side.
     LoadUncovered,
     /// An iteration came near its limit.
@@ -62,7 +64,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::ActionUnused,
         Self::ComparedTable,
         Self::Chattered,
@@ -70,6 +72,7 @@ impl WarningKind {
         Self::FloppyModesUncounted,
         Self::FloppyModesHeld,
         Self::LargeDisplacements,
+        Self::LoadHeld,
         Self::LoadUncovered,
         Self::ManyIterations,
         Self::NoModes,
@@ -101,6 +104,7 @@ impl WarningKind {
             Self::FloppyModesUncounted => "floppy-modes-uncounted",
             Self::FloppyModesHeld => "floppy-modes-held",
             Self::LargeDisplacements => "large-displacements",
+            Self::LoadHeld => "load-held",
             Self::LoadUncovered => "load-uncovered",
             Self::ManyIterations => "many-iterations",
             Self::NoModes => "no-modes",

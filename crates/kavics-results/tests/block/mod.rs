@@ -249,6 +249,7 @@ pub fn equilibrium(scene: &Scene, step: usize) -> Equilibrium {
         step,
         stage: 0,
         load_factor: factor,
+        factors: vec![factor; scene.program.actions.len()],
         complete: true,
         iterations: if step == 0 { 0 } else { 4 + step },
         work_iterations: 0,

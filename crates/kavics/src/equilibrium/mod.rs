@@ -354,8 +354,11 @@ pub struct Equilibrium {
     pub step: usize,
     /// Index of the stage.
     pub stage: usize,
-    /// Factor of the stage's actions; between two factors where a step could not be finished.
+    /// Factor of the stage's actions, of the first of them where they differ; between two factors where a step could not be
+    /// finished.
     pub load_factor: f64,
+    /// Factor of each action.
+    pub factors: Vec<f64>,
     /// False: the last equilibrium of a load step that could not be finished.
     pub complete: bool,
     /// Linear solves in this step, those for the work apart.

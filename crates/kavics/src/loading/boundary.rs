@@ -3,7 +3,7 @@
 use super::advance::Point;
 use super::control::Steered;
 use super::event_driven::{EventDriven, Run, Unfinished};
-use super::ledger::Forces;
+use super::ledger::{Closing, Forces};
 use super::load_path::LoadPath;
 use super::program::Program;
 use crate::equilibrium::configuration::Configuration;
@@ -21,6 +21,8 @@ pub struct Last {
     pub load_factor: f64,
     /// Whether its stability was sought.
     pub is_tested: bool,
+    /// How well the ledger had closed.
+    pub closing: Closing,
 }
 
 /// Where a load path stands.
@@ -81,11 +83,17 @@ impl LoadPath<'_> {
         let of = |value| count(PLACE, value);
         self.step = of(step)?;
         self.next = (of(stage)?, of(place)?);
-        let [load_factor] = memory.fixed(LAST)?;
+        let (load_factor, closing) = match memory.list::<f64>(LAST)?.unwrap_or_default() {
+            &[load_factor, error, largest] => (load_factor, Closing { error, largest }),
+            // Of a version that did not look whether the ledger closes.
+            &[load_factor] => (load_factor, Closing::default()),
+            _ => return Err(MemoryError::unfit(LAST)),
+        };
         self.last = Last {
             stage: of(last_stage)?,
             load_factor,
             is_tested: is_tested != 0,
+            closing,
         };
         self.steered.read(memory)?;
         self.system.take_up(kept, &point.configuration);
@@ -121,11 +129,13 @@ impl Boundary {
             stage,
             load_factor,
             is_tested,
+            closing,
         } = self.last;
         let place = [self.step, self.next.0, self.next.1, stage];
         let place = place.map(|count| count as i64).into_iter();
         memory.put(PLACE, place.chain([i64::from(code(is_tested))]).collect());
-        memory.put(LAST, vec![load_factor]);
+        let numbers = [load_factor, closing.error, closing.largest];
+        memory.put(LAST, numbers.to_vec());
         self.steered.write(memory);
         self.run.write(memory);
         if let Some(unfinished) = &self.unfinished {

@@ -14,6 +14,26 @@ pub struct Forces {
     pub reactions: PerBody<Load>,
 }
 
+/// How well the ledger has closed so far, `[force·length]`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Closing {
+    /// What it left open at the last equilibrium.
+    pub error: f64,
+    /// The largest of its terms so far.
+    pub largest: f64,
+}
+
+impl Closing {
+    /// The same at the next equilibrium, and what was left open on the way there, over the largest term.
+    pub fn at(self, energy: &Energy) -> (Self, f64) {
+        let sizes = energy.terms().into_iter().map(f64::abs);
+        let (error, largest) = (energy.ledger_error(), sizes.fold(self.largest, f64::max));
+        let open = (error - self.error).abs();
+        let relative = if open == 0.0 { 0.0 } else { open / largest };
+        (Self { error, largest }, relative)
+    }
+}
+
 /// Work of loads and reactions on the straight way between two equilibria:
 ///
 /// ```math

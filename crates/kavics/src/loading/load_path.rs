@@ -8,7 +8,7 @@ use super::advance::{self, Point, Way};
 use super::boundary::{Boundary, Last};
 use super::control::{PathControl, Steered};
 use super::event_driven::{self, EventDriven, Unfinished};
-use super::{Breakage, Program, Stage};
+use super::{Breakage, Program, Stage, work};
 use crate::assembly::Assembly;
 use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
@@ -21,6 +21,9 @@ use crate::ids::{PerGrain, PerProperty};
 
 /// A load step that fails is halved until its end is known to this share of the load factor.
 pub(super) const COLLAPSE: f64 = 1e-4;
+
+/// Rounding of the ledger is below this share of its largest term.
+const OPEN: f64 = 1e-9;
 
 /// Where a load path comes to.
 #[derive(Clone, Debug)]
@@ -93,10 +96,21 @@ impl LoadStep {
         }
     }
 
-    /// Share at which the stage's load factor is zero.
-    pub(super) fn unloaded(&self) -> f64 {
-        let [from, to] = self.load_factor;
-        from / (from - to)
+    /// Whether all actions of the stage start from the same factor.
+    pub(super) fn is_common(&self, program: &Program) -> bool {
+        let actions = program.stages[self.stage].actions.iter();
+        actions
+            .map(|&action| self.from[action])
+            .all(|from| from == self.load_factor[0])
+    }
+
+    /// The factors at which the stage's actions are zero.
+    pub(super) fn unloaded(&self, program: &Program) -> Vec<f64> {
+        let mut factors = self.from.clone();
+        for &action in &program.stages[self.stage].actions {
+            factors[action] = 0.0;
+        }
+        factors
     }
 
     /// Share of this load step to which its end is to be known.
@@ -322,11 +336,20 @@ impl<'a> LoadPath<'a> {
     }
 
     /// The path has come to an equilibrium.
-    pub(super) fn come_to(&mut self, equilibrium: Equilibrium) {
+    pub(super) fn come_to(&mut self, mut equilibrium: Equilibrium) {
+        let (closing, open) = self.last.closing.at(&equilibrium.energy);
+        let is_constant = !work::depends_on_state(&self.system, &self.point.configuration);
+        // With constant stiffness no more than rounding is left open.
+        let allowed = self.system.settings.work_tolerance.max(OPEN);
+        if is_constant && open > allowed {
+            let warning = Warning::WorkError { relative: open };
+            equilibrium.warnings.push(warning);
+        }
         self.last = Last {
             stage: equilibrium.stage,
             load_factor: equilibrium.load_factor,
             is_tested: equilibrium.stability.is_some(),
+            closing,
         };
         self.waiting.push_back(Ok(equilibrium));
     }
@@ -410,6 +433,7 @@ impl<'a> LoadPath<'a> {
             step: self.step,
             stage,
             load_factor,
+            factors: self.point.factors.clone(),
             complete,
             iterations: way.progress.iterations,
             work_iterations: way.account.iterations,

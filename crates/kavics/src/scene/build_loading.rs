@@ -14,7 +14,7 @@ use super::loading_plan::{
 };
 use super::sides::{edge_called, side_called};
 use crate::assembly::{Assembly, Grain, Partner, envelope, middle};
-use crate::equilibrium::{Freedom, Load};
+use crate::equilibrium::{ALL_FREEDOMS, Freedom, Load};
 use crate::ids::{BodyId, GrainId, SideId};
 use crate::loading::{Action, AppliedLoad, Held, Prescribed, Program, Stage};
 use crate::warning::WarningKind;
@@ -61,6 +61,14 @@ impl Loading<'_> {
         }
         if let Some(weight) = self.plan.weight {
             self.weigh(weight, first + self.plan.loads.len(), &mut loads);
+        }
+        let on_loads = self.plan.loads.iter().zip(first..);
+        for (load, _) in on_loads.filter(|(_, action)| is_borne(*action, &loads, &owners)) {
+            let name = &load.name.value;
+            let what = format!(
+                "load `{name}` acts on nothing but what is held or moved: it goes into supports, and strains nothing"
+            );
+            checker.warn(WarningKind::LoadHeld, what);
         }
         let mut held = Vec::new();
         let mut prescribed = Vec::new();
@@ -363,4 +371,15 @@ fn loads_a_held_side(
         )
         .and(table, format!("`free = [\"{freedom}\"]` would set it free")),
     );
+}
+
+/// Whether an action loads held and moved freedoms alone.
+fn is_borne(action: usize, loads: &[AppliedLoad], owners: &Owners) -> bool {
+    let mut own = loads.iter().filter(|load| load.action == action).peekable();
+    own.peek().is_some()
+        && own.all(|applied| {
+            let parts = ALL_FREEDOMS.into_iter().zip(applied.load.components());
+            let mut acting = parts.filter(|(_, part)| *part != 0.0);
+            acting.all(|(freedom, _)| owners.contains_key(&(applied.body, freedom)))
+        })
 }

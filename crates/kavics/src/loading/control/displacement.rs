@@ -5,7 +5,7 @@ use crate::equilibrium::Iteration;
 use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::steered::Aim;
 use crate::loading::LoadPath;
-use crate::loading::advance::Way;
+use crate::loading::advance::{self, Way};
 use crate::loading::load_path::{COLLAPSE, LoadStep};
 
 /// A share this near to 1 is the whole load step.
@@ -14,10 +14,15 @@ const WHOLE: f64 = 1e-8;
 const TEARING: f64 = 1e-2;
 
 impl LoadPath<'_> {
-    /// A load step of the present point's that grows as the stage's factors do.
+    /// A load step of the present point's that grows as the stage's factors do: in the first of a stage each action to the
+    /// stage's factor, wherever it comes from, then all alike.
     pub(super) fn increment_of_displacement(&mut self, load_step: &LoadStep) -> LoadStep {
-        let by = load_step.load_factor[1] - self.steered.counted_to;
+        let counted_to = self.steered.counted_to;
         self.steered.counted_to = load_step.load_factor[1];
+        if self.steered.taken.1 == 0 {
+            return load_step.clone();
+        }
+        let by = load_step.load_factor[1] - counted_to;
         let mut to = load_step.from.clone();
         for &action in &self.program.stages[load_step.stage].actions {
             to[action] += by;
@@ -109,13 +114,27 @@ impl LoadPath<'_> {
         if let Some(compliance) = self.steered.compliance {
             return Ok(compliance * by * by);
         }
+        let work = self.elastic_work(growth, way)?;
+        let compliance = if load_step.is_common(self.program) {
+            work / (by * by)
+        } else {
+            let mut ones = vec![0.0; self.program.actions.len()];
+            for &action in &self.program.stages[load_step.stage].actions {
+                ones[action] = 1.0;
+            }
+            let bodies = self.system.assembly.body_count();
+            self.elastic_work(&advance::action(self.program, &ones, bodies), way)?
+        };
+        self.steered.compliance = Some(compliance);
+        Ok(work)
+    }
+
+    fn elastic_work(&mut self, growth: &Action, way: &mut Way) -> Result<f64, Failure> {
         let configuration = &self.point.configuration;
         let system = &mut self.system;
         let rate = system.elastic_growth(configuration, growth, &mut way.progress)?;
         let bodies = rate.iter();
-        let work: f64 = bodies.map(|(body, u)| growth.loads[body].work(*u)).sum();
-        self.steered.compliance = Some(work / (by * by));
-        Ok(work)
+        Ok(bodies.map(|(body, u)| growth.loads[body].work(*u)).sum())
     }
 }
 

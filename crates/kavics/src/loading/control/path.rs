@@ -151,11 +151,13 @@ impl LoadPath<'_> {
         if tried.events.len() == events && !torn {
             return false;
         }
-        let share = if torn { load_step.unloaded() } else { share };
-        let factors = load_step.factors(share);
+        let (factors, at) = if torn {
+            (load_step.unloaded(self.program), 0.0)
+        } else {
+            (load_step.factors(share), load_factor)
+        };
         let action = advance::action(self.program, &factors, system.assembly.body_count());
         let mut configuration = start.configuration.clone();
-        let at = load_step.load_factor(share);
         let next = system
             .equilibrate(&mut configuration, &action, &mut tried.progress)
             .map(|()| {

@@ -152,25 +152,23 @@ impl Varying {
 
 /// Where a load step starts and ends, in x.
 pub fn ends(program: &Program, load_step: &LoadStep) -> [f64; 2] {
-    if is_common(program, load_step) {
+    if load_step.is_common(program) {
         load_step.load_factor
     } else {
         [0.0, 1.0]
     }
 }
 
-/// Whether all actions of the stage start from the same factor.
-pub fn is_common(program: &Program, load_step: &LoadStep) -> bool {
-    let actions = program.stages[load_step.stage].actions.iter();
-    actions
-        .map(|&action| load_step.from[action])
-        .all(|from| from == load_step.load_factor[0])
+/// The largest size of x in a load step.
+pub fn farthest(program: &Program, load_step: &LoadStep) -> f64 {
+    let [start, target] = ends(program, load_step);
+    start.abs().max(target.abs())
 }
 
 /// Factor of each action, and the load factor, as lines.
 fn lines(program: &Program, load_step: &LoadStep) -> (Vec<[f64; 2]>, [f64; 2]) {
     let driven = &program.stages[load_step.stage].actions;
-    if is_common(program, load_step) {
+    if load_step.is_common(program) {
         let line = |(action, &from)| {
             if driven.contains(&action) {
                 [0.0, 1.0]

@@ -75,6 +75,17 @@ pub struct Walk<'w, 'a> {
     stop: Option<Arc<AtomicBool>>,
 }
 
+/// How a load step begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beginning {
+    /// On a new line, which has still to be brought into balance.
+    New,
+    /// On a line that is in balance as far as it has been gone along, but goes farther.
+    Farther,
+    /// On a line that is in balance.
+    Known,
+}
+
 /// What comes next.
 enum Next {
     Arrive,
@@ -92,8 +103,8 @@ pub fn advance(
     let load_step = &unfinished.load_step;
     let [start, target] = acting::ends(program, load_step);
     let (begun, kept) = (unfinished.x.is_some(), event_driven.course.take());
-    let (course, is_new) = match kept {
-        Some(course) if begun => (course, false),
+    let (course, beginning) = match kept {
+        Some(course) if begun => (course, Beginning::Known),
         kept => Course::start(system, program, point, load_step, kept),
     };
     let mut walk = Walk {
@@ -106,11 +117,11 @@ pub fn advance(
         run: &mut event_driven.run,
         course,
         x: unfinished.x.unwrap_or(start),
-        farthest: start.abs().max(target.abs()),
+        farthest: acting::farthest(program, load_step),
         outer: take(&mut unfinished.outer),
         went_on: unfinished.went_on,
     };
-    let begins = if begun { Ok(()) } else { walk.begin(is_new) };
+    let begins = if begun { Ok(()) } else { walk.begin(beginning) };
     let outcome = begins.and_then(|()| walk.follow(target));
     walk.system.stop = walk.stop.take();
     if let Ok(false) = outcome {
@@ -130,18 +141,26 @@ pub fn advance(
 }
 
 impl Course {
-    /// The course of a line: the kept one where it is on the same. True: it has still to be brought into balance.
+    /// The course of a line: the kept one where it is on the same.
     fn start(
         system: &System<'_>,
         program: &Program,
         point: &Point,
         load_step: &LoadStep,
         kept: Option<Self>,
-    ) -> (Self, bool) {
+    ) -> (Self, Beginning) {
         let configuration = &point.configuration;
         let acting = Acting::new(program, load_step, system.assembly.body_count());
         let mut course = match kept {
-            Some(course) if course.network.acting == acting => return (course, false),
+            Some(mut course) if course.network.acting == acting => {
+                let is_known =
+                    acting::farthest(program, load_step) <= acting::farthest(program, &course.line);
+                if is_known {
+                    return (course, Beginning::Known);
+                }
+                course.line = load_step.clone();
+                return (course, Beginning::Farther);
+            }
             Some(mut course) => {
                 course.network.acting = acting;
                 course.line = load_step.clone();
@@ -155,7 +174,7 @@ impl Course {
             && bonds
                 .iter()
                 .all(|bond| !bond.broken || bond.property.is_none());
-        (course, true)
+        (course, Beginning::New)
     }
 
     /// A network that has no factor yet.
@@ -174,9 +193,14 @@ impl Course {
 }
 
 impl Walk<'_, '_> {
-    /// Brings a new course into balance.
-    fn begin(&mut self, is_new: bool) -> Result<(), Failure> {
-        if is_new {
+    /// Brings a course into balance. What is small beside the forces up to one factor need not be so beside those up to a
+    /// farther one.
+    fn begin(&mut self, beginning: Beginning) -> Result<(), Failure> {
+        if beginning == Beginning::Farther && !self.balance(MOST_SOLVES) {
+            self.course.events = usize::MAX;
+            return Err(self.failure_from_here());
+        }
+        if beginning == Beginning::New {
             let before = self.system.set_aside.clone();
             self.leave_out();
             let network = &mut self.course.network;

@@ -137,7 +137,7 @@ impl EventDriven {
         if unfinished.x.is_none() {
             let load_step = &unfinished.load_step;
             let ends = acting::ends(program, load_step);
-            let common = acting::is_common(program, load_step);
+            let common = load_step.is_common(program);
             self.run.turn(load_step.stage, common, ends);
         }
         if is_linear(system, point) {
