@@ -3,7 +3,7 @@
 use kavics_pictures::{
     CurveRequest, Format, Picture, PictureError, Request, Theme, Units, What, draw_curves, write,
 };
-use kavics_results::ResultsFolder;
+use kavics_results::{ResultsFolder, check_output};
 
 use crate::draw_arguments as given;
 use crate::failure::Failure;
@@ -23,6 +23,7 @@ const CURVE_WIDTH: f64 = 90.0;
 
 pub fn draw(arguments: &given::DrawArguments) -> Result<(), Failure> {
     let format = Format::of(&arguments.output)?;
+    check_output(&arguments.output, &[])?;
     let folder = ResultsFolder::open(&arguments.results)?;
     // Refuses tables of a later version.
     folder.record()?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use kavics_export::{Format, Options};
-use kavics_results::ResultsFolder;
+use kavics_results::{ResultsFolder, check_output_folder};
 
 use crate::failure::Failure;
 use crate::scene_file::say;
@@ -56,6 +56,7 @@ pub fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     };
     let usual = || usual_folder(&arguments.results, name);
     let folder = arguments.output.clone().unwrap_or_else(usual);
+    check_output_folder(&folder)?;
     let options = Options {
         format,
         steps: arguments.step.clone(),

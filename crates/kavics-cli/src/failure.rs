@@ -102,10 +102,12 @@ pub enum Failure {
     Output(#[from] std::io::Error),
     /// The machine has no memory for the run.
     #[error(
-        "about {needed} of memory needed, {available} available; fewer grains, solver = \"iterative\" or a larger machine \
+        "about {needed} of {what} needed, {available} available; fewer grains, solver = \"iterative\" or a larger machine \
          may do, --any-size tries all the same"
     )]
     TooLarge {
+        /// Memory, or what of it may be spoken of.
+        what: &'static str,
         /// What the run needs.
         needed: String,
         /// What there is.
@@ -134,6 +136,7 @@ impl Failure {
             | ResultsError::NotResults { .. }
             | ResultsError::NotOfARun { .. }
             | ResultsError::InUse { .. }
+            | ResultsError::NoOutput { .. }
             | ResultsError::Locked { .. }
             | ResultsError::OtherScene { .. }
             | ResultsError::SceneChanged { .. }

@@ -9,11 +9,11 @@ use kavics::scene::Scene;
 use crate::failure::Failure;
 
 /// Bytes of the program itself.
-const PROGRAM: f64 = 18e6;
+const PROGRAM: f64 = 20e6;
 /// Bytes a grain and a contact with a factor, the factor apart, and with the solver that iterates: fitted to the
 /// largest resident size of whole runs (docs/benchmarks.md).
-const DIRECT: [f64; 2] = [2300.0, 750.0];
-const ITERATIVE: [f64; 2] = [2000.0, 900.0];
+const DIRECT: [f64; 2] = [1950.0, 1160.0];
+const ITERATIVE: [f64; 2] = [2000.0, 1200.0];
 /// Bytes a grain to place it, and to find its contacts.
 const PLACING: [f64; 2] = [100.0, 450.0];
 /// Values of the factor for each unknown and each doubling of their number, with three contacts a grain, and the power
@@ -26,6 +26,16 @@ const UNSYMMETRIC: f64 = 2.5;
 const STEP_ROW: f64 = 1000.0;
 /// The estimate may be this much too high, so what needs little more than there is may try.
 const DOUBT: f64 = 1.25;
+
+/// The address space is a wall: at its end an allocation fails and the run is over. The estimate may be this much too
+/// low, and there must be room for what the allocator sets apart for a run, and for each of its threads.
+const CAUTION: f64 = 1.2;
+const SET_APART: [f64; 2] = [220e6, 72e6];
+/// The same where nothing is solved.
+const SET_APART_PLACING: f64 = 20e6;
+
+/// The report and its pictures: so many times the results, and at most so many bytes.
+const REPORT: [f64; 2] = [2.0, 6e6];
 
 /// Columns of numbers that are the same at every load step: of grains, of contacts.
 const UNCHANGING: [f64; 2] = [4.0, 9.0];
@@ -58,9 +68,11 @@ impl Estimate {
             contacts: scene.assembly.contacts.len() as f64,
             steps: stages.map(|stage| stage.factors.len()).sum::<usize>() as f64,
         };
+        let results = results(scene, size);
+        let [share, most] = REPORT;
         Self {
-            memory: memory(scene, size),
-            results: results(scene, size),
+            memory: memory(scene, size) + (share * results).min(most),
+            results,
         }
     }
 
@@ -69,7 +81,9 @@ impl Estimate {
     /// # Errors
     /// Memory that is not there.
     pub fn check(self, any_size: bool) -> Result<(), Failure> {
-        check_memory(self.memory, any_size)
+        let [run, thread] = SET_APART;
+        let threads = rayon::current_num_threads() as f64;
+        check_memory(self.memory, run + thread * threads, any_size)
     }
 }
 
@@ -85,15 +99,25 @@ pub fn check_placing(text: &str, with_contacts: bool, any_size: bool) -> Result<
         grain
     };
     let grains = Scene::planned_grains(text).unwrap_or_default();
-    check_memory(PROGRAM + bytes * grains, any_size)
+    check_memory(PROGRAM + bytes * grains, SET_APART_PLACING, any_size)
 }
 
-fn check_memory(needed: f64, any_size: bool) -> Result<(), Failure> {
-    match available() {
-        Some(available) if !any_size && needed > DOUBT * available => Err(Failure::TooLarge {
-            needed: bytes(needed),
-            available: bytes(available),
-        }),
+/// Refuses what does not fit into memory, or with what is `set_apart` into the address space.
+fn check_memory(needed: f64, set_apart: f64, any_size: bool) -> Result<(), Failure> {
+    let too_large = |what, needed, available| Failure::TooLarge {
+        what,
+        needed: bytes(needed),
+        available: bytes(available),
+    };
+    let addresses = CAUTION * needed + set_apart;
+    match (available(), allowed_addresses()) {
+        _ if any_size => Ok(()),
+        (_, Some(allowed)) if addresses > allowed => {
+            Err(too_large("address space", addresses, allowed))
+        }
+        (Some(available), _) if needed > DOUBT * available => {
+            Err(too_large("memory", needed, available))
+        }
         _ => Ok(()),
     }
 }
@@ -165,9 +189,13 @@ pub fn available() -> Option<f64> {
     let meminfo = read("/proc/meminfo")?;
     let machine = kilobytes(&meminfo, "MemAvailable:")? + kilobytes(&meminfo, "SwapFree:")?;
     let groups = read("/proc/self/cgroup").unwrap_or_default();
-    let own = read("/proc/self/limits").and_then(|limits| address_space(&limits));
-    let limits = control_groups(&groups).into_iter().chain(own);
+    let limits = control_groups(&groups).into_iter();
     Some(limits.fold(machine, f64::min))
+}
+
+/// The address space that this process may have, where it is bounded.
+fn allowed_addresses() -> Option<f64> {
+    address_space(&fs::read_to_string("/proc/self/limits").ok()?)
 }
 
 /// A line of `/proc/meminfo` in bytes.

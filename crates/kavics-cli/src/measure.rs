@@ -4,7 +4,9 @@ use std::io::{Write, stdout};
 
 use kavics::measure::{Snapshot, Window, measures};
 use kavics::scene::{Scene, SceneError};
-use kavics_results::{Recorded, ResultsFolder, StepRow, read_grains, write_steps, write_steps_csv};
+use kavics_results::{
+    Recorded, ResultsFolder, StepRow, check_output, read_grains, write_steps, write_steps_csv,
+};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arguments::MeasureArguments;
@@ -13,6 +15,9 @@ use crate::origins::Origins;
 use crate::{own_files, scene_file};
 
 pub fn measure(arguments: &MeasureArguments) -> Result<(), Failure> {
+    if let Some(path) = &arguments.output {
+        check_output(path, &[])?;
+    }
     let folder = ResultsFolder::open(&arguments.results)?;
     folder.check_whole()?;
     let scene = scene_of(&folder, arguments.window.as_deref())?;

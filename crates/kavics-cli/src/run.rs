@@ -66,7 +66,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), Failure> {
         apart: arguments.checkpoint,
     };
     let path = start.path.stopped_by(told);
-    let (ended, lines) = (follower.follow(path)?, follower.lines);
+    let (ended, lines) = (follower.follow(path), follower.lines);
+    let ended = ended.inspect_err(|_| results.keep_rows())?;
     let (state, failure) = match ended {
         Ended::Stopped => return stop(results, &folder),
         Ended::Done => (RunState::Done, None),

@@ -44,14 +44,24 @@ pub fn place_grains(arguments: &SceneArguments, any_size: bool) -> Result<Pack, 
 
 /// The files that a run of the scene reads: the scene itself, and those it names.
 pub fn files_read(arguments: &SceneArguments, scene: &Scene) -> Vec<PathBuf> {
-    let folder = arguments.scene.parent().unwrap_or(Path::new(""));
-    let listed = own_files::listed(&scene.text)
-        .into_iter()
-        .map(|file| folder.join(file));
-    let mut files = vec![arguments.scene.clone()];
-    files.extend(listed);
+    let mut files = files_of_grains(arguments, &scene.text);
     files.extend(scene.compare.clone());
     files
+}
+
+/// The files that placing the grains reads, before they are read.
+pub fn files_placing(arguments: &SceneArguments) -> Result<Vec<PathBuf>, Failure> {
+    with_text(arguments, |text, _, _| Ok(files_of_grains(arguments, text)))
+}
+
+fn files_of_grains(arguments: &SceneArguments, text: &str) -> Vec<PathBuf> {
+    let folder = arguments.scene.parent().unwrap_or(Path::new(""));
+    let listed = own_files::listed(text);
+    let listed = listed.into_iter().map(|file| folder.join(file));
+    [arguments.scene.clone()]
+        .into_iter()
+        .chain(listed)
+        .collect()
 }
 
 fn with_text<T>(

@@ -4,7 +4,7 @@ use std::io::{Write, stdout};
 
 use clap::CommandFactory;
 use kavics_report::StepChoice;
-use kavics_results::ResultsFolder;
+use kavics_results::{ResultsFolder, check_output};
 
 use crate::arguments::{Arguments, CompletionsArguments, ManArguments, ReportArguments};
 use crate::failure::Failure;
@@ -14,6 +14,9 @@ pub fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let steps = arguments.steps.clone();
     let steps = steps.map_or(StepChoice::Fitting, StepChoice::Named);
     let output = arguments.output.as_deref();
+    if let Some(path) = output {
+        check_output(path, &[])?;
+    }
     let path = kavics_report::write_steps(&arguments.results, output, &steps)?;
     say(&format!("report: {}\n", path.display()));
     let folder = ResultsFolder::open(&arguments.results)?;

@@ -103,6 +103,10 @@ fn a_device_that_is_full_is_an_error_and_what_was_found_stays() {
         let record = results.record().expect("a record");
         let unfinished = record.warnings.last().expect("a warning");
         assert!(unfinished.ends_with("[run-unfinished]"), "{unfinished}");
+        if name.contains('/') {
+            let rows = results.step_rows().expect("a table");
+            assert_eq!(rows.len(), 5, "{name}: a row for each step that is whole");
+        }
         place.assert_ends_alike(&full, &[]);
     }
 }
@@ -257,6 +261,36 @@ fn where_no_checkpoint_is_whole_nothing_is_touched() {
     assert_readable(&place.folder("damaged"), 3);
 }
 
+/// Performs a task with so many kilobytes of addresses.
+fn within(kilobytes: usize, folder: &Path, arguments: &[&str]) -> Output {
+    let script = format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script, env!("CARGO_BIN_EXE_kavics")]);
+    let done = shell.args(arguments).current_dir(folder).output();
+    done.expect("a shell")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_run_has_room_in_the_addresses_that_it_asks_for() {
+    let place = Place::with(EVENTS);
+    for threads in ["1", "2"] {
+        let run = ["run", "scene.toml", "--force", "--threads", threads];
+        let refused = within(100_000, &place.folder(""), &run);
+        let said = said(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        let asked = said.strip_prefix("about ").and_then(|rest| {
+            let (megabytes, rest) = rest.split_once(' ')?;
+            let expected = "MB of address space needed, 102 MB available";
+            rest.starts_with(expected).then(|| megabytes.parse().ok())?
+        });
+        let asked: usize = asked.unwrap_or_else(|| panic!("{said}"));
+        let enough = (asked + 1) * 1000 * 1000 / 1024;
+        let done = within(enough, &place.folder(""), &run);
+        assert!(done.status.success(), "{}", self::said(&done));
+    }
+}
+
 #[test]
 fn a_run_does_not_go_on_where_a_recorded_table_is_missing_or_damaged() {
     let place = Place::with(SLIDING);
@@ -292,20 +326,11 @@ fn grains_that_have_no_room_in_memory_are_refused_before_they_are_placed() {
                  rows = { count = 9000, longest = 9000 }\n";
     fs::write(room.path().join("large.toml"), scene).expect("room on the disk");
     for task in ["check", "pack", "run"] {
-        let script = "ulimit -v 2000000; exec \"$0\" \"$@\"";
-        let mut shell = Command::new("sh");
-        shell.args([
-            "-c",
-            script,
-            env!("CARGO_BIN_EXE_kavics"),
-            task,
-            "large.toml",
-        ]);
-        let refused = shell.current_dir(room.path()).output().expect("a shell");
+        let refused = within(2_000_000, room.path(), &[task, "large.toml"]);
         let said = said(&refused);
         assert_eq!(refused.status.code(), Some(2), "{said}");
         assert!(
-            said.contains(" of memory needed, 2048 MB available"),
+            said.contains(" of address space needed, 2048 MB available"),
             "{said}"
         );
         assert!(!room.path().join("large.results").exists());

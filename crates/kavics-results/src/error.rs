@@ -37,6 +37,14 @@ pub enum ResultsError {
         /// What the run needs.
         path: PathBuf,
     },
+    /// A file or folder is not to be written.
+    #[error("{}: not written, as {reason}; -o names another", path.display())]
+    NoOutput {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        reason: &'static str,
+    },
     /// Another run writes to the folder.
     #[error("{} is being written by another run; wait for its end, or name another folder by -o", folder.display())]
     Locked {

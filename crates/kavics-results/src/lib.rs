@@ -4,6 +4,7 @@
 //! metadata, and the same tables read back by column name. No mechanics is computed here.
 
 mod actions;
+mod apart;
 mod checkpoint;
 mod checkpoint_file;
 mod checkpoint_frame;
@@ -41,6 +42,7 @@ mod voids;
 mod warning;
 
 pub use actions::ActionRow;
+pub use apart::{check_output, check_output_folder};
 pub use checkpoint::{
     CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, check_same, clear_checkpoints,
 };

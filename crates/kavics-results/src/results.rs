@@ -33,8 +33,9 @@ use crate::steps::{StepRow, iterate_columns, step_columns};
 use crate::voids::{void_columns, void_rows};
 use crate::warning::{SolverWarnings, without_moduli};
 
-/// Tables that grow are written again at most this often.
-const BETWEEN_WRITES: Duration = Duration::from_millis(500);
+/// Tables that grow are written again so often that it takes one part in so many of the run, and at least so often.
+const SHARE_OF_WRITES: u32 = 30;
+const BETWEEN_WRITES: Duration = Duration::from_secs(10);
 
 /// How a results folder is made.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,10 +68,17 @@ pub struct Results<'a> {
     pub(crate) log: Log,
     /// Load steps whose moduli were asked for and do not exist.
     pub(crate) without_moduli: Vec<usize>,
-    written: Instant,
+    growing: Growing,
     /// Rows that an earlier run of the same results wrote.
     pub(crate) before: Before,
     pub(crate) checkpoints: Checkpoints,
+}
+
+/// When the tables that grow were written last, and what it cost.
+#[derive(Debug)]
+struct Growing {
+    written: Instant,
+    cost: Duration,
 }
 
 /// Rows of the growing tables that an earlier run wrote.
@@ -144,7 +152,10 @@ impl<'a> Results<'a> {
             solver_warnings: SolverWarnings::default(),
             without_moduli: Vec::new(),
             log: Log::open(),
-            written: Instant::now(),
+            growing: Growing {
+                written: Instant::now(),
+                cost: Duration::ZERO,
+            },
             before: Before::default(),
             checkpoints: Checkpoints {
                 began: Instant::now(),
@@ -164,25 +175,22 @@ impl<'a> Results<'a> {
         measures: &Measures,
         grain_stress: &PerGrain<Tensor>,
     ) -> Result<(), ResultsError> {
-        self.add_events(equilibrium);
-        let actions = self.actions.rows(&self.scene.program, equilibrium);
-        self.action_rows.extend(actions);
-        if equilibrium.step > 0 {
-            self.steps.push(self.step_row(equilibrium, measures));
-            if equilibrium.tangents.is_some() && measures.moduli.is_none() {
-                self.without_moduli.push(equilibrium.step);
-            }
-        }
-        self.log.note_step(equilibrium.step, equilibrium.iterations);
+        // Before its row, so that what a row belongs to is always there.
         if self.is_recorded(equilibrium.step) {
             self.unrecorded = None;
             self.write_recorded(equilibrium, grain_stress)?;
         } else {
             self.unrecorded = Some((equilibrium.clone(), grain_stress.clone()));
         }
-        if self.written.elapsed() > BETWEEN_WRITES {
+        self.add_rows(equilibrium, measures);
+        let wait = SHARE_OF_WRITES * self.growing.cost;
+        if self.growing.written.elapsed() > wait.min(BETWEEN_WRITES) {
+            let begun = Instant::now();
             self.write_growing()?;
-            self.written = Instant::now();
+            self.growing = Growing {
+                written: Instant::now(),
+                cost: begun.elapsed(),
+            };
         }
         Ok(())
     }
@@ -238,6 +246,11 @@ impl<'a> Results<'a> {
         self.record.warnings.push(warning);
     }
 
+    /// Writes the rows so far after a fault, as far as there is room for them: they need less than what there was none for.
+    pub fn keep_rows(&self) {
+        let _ = self.write_growing();
+    }
+
     /// Writes all that has not been written, and how the run ended; `failure` says why there is no equilibrium.
     ///
     /// # Errors
@@ -248,7 +261,8 @@ impl<'a> Results<'a> {
         failure: Option<String>,
     ) -> Result<Vec<StepRow>, ResultsError> {
         if let Some((equilibrium, grain_stress)) = self.unrecorded.take() {
-            self.write_recorded(&equilibrium, &grain_stress)?;
+            let recorded = self.write_recorded(&equilibrium, &grain_stress);
+            recorded.inspect_err(|_| self.keep_rows())?;
         }
         self.record.state = state;
         self.record.failure = failure;
@@ -258,6 +272,19 @@ impl<'a> Results<'a> {
             clear_checkpoints(&self.folder)?;
         }
         Ok(self.steps)
+    }
+
+    fn add_rows(&mut self, equilibrium: &Equilibrium, measures: &Measures) {
+        self.add_events(equilibrium);
+        let actions = self.actions.rows(&self.scene.program, equilibrium);
+        self.action_rows.extend(actions);
+        if equilibrium.step > 0 {
+            self.steps.push(self.step_row(equilibrium, measures));
+            if equilibrium.tangents.is_some() && measures.moduli.is_none() {
+                self.without_moduli.push(equilibrium.step);
+            }
+        }
+        self.log.note_step(equilibrium.step, equilibrium.iterations);
     }
 
     fn add_events(&mut self, equilibrium: &Equilibrium) {

@@ -241,7 +241,7 @@ fn take(
     })
 }
 
-fn is_file_of_a_run(name: &str) -> bool {
+pub(crate) fn is_file_of_a_run(name: &str) -> bool {
     FILES
         .iter()
         .any(|file| *file == name || is_left_of(name, file))

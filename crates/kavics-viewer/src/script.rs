@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use crate::{Piece, bundle};
 
 /// Little more is gained by more effort: the last bits of numbers are noise.
-const EFFORT: u32 = 4;
+const EFFORT: u32 = 2;
 
 /// An Arrow stream as an element of a page: compressed, in base64.
 pub(crate) fn of_stream(piece: Piece, stream: &[u8]) -> String {
