@@ -93,7 +93,9 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
         return begin_locked(scene, folder, options, lock);
     };
     // Without its scene nothing says that a checkpoint belongs to this one.
-    ResultsFolder::open(folder)?.scene()?;
+    let recorded = ResultsFolder::open(folder)?;
+    recorded.scene()?;
+    recorded.check_recorded(scene, checkpoint.header.step)?;
     for note in &checkpoint.notes {
         say(&format!("warning: {note}\n"));
     }

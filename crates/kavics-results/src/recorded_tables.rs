@@ -98,6 +98,21 @@ impl ResultsFolder {
         self.recorded_steps().map(|_| ())
     }
 
+    /// Checks the recorded tables of a run of `scene` up to a load step from which it is to go on: they are not written
+    /// again.
+    ///
+    /// # Errors
+    /// A table that is missing, damaged, or of another load step or run.
+    pub fn check_recorded(&self, scene: &Scene, last: usize) -> Result<(), ResultsError> {
+        let recorded = RecordedTables::of(scene);
+        for step in (0..=last).step_by(recorded.every) {
+            for table in recorded.everywhere() {
+                self.check_table(table, step)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The load steps of which a table is there.
     fn steps_of(&self, table: &str) -> Result<BTreeSet<usize>, ResultsError> {
         let folder = self.path().join(table);
