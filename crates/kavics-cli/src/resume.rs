@@ -7,7 +7,7 @@ use kavics::measure::{Snapshot, grain_stress};
 use kavics::scene::Scene;
 use kavics_results::{
     Checkpoint, Lock, Options, Results, ResultsError, ResultsFolder, RunState, check_own,
-    check_room, clear_unfinished,
+    check_room, clear_unfinished, note_refusal,
 };
 
 use crate::failure::Failure;
@@ -83,7 +83,12 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
         let folder = folder.to_owned();
         return Err(ResultsError::Locked { folder }.into());
     }
-    let Some(checkpoint) = Checkpoint::newest(folder, scene)? else {
+    let found = from_checkpoint(scene, folder, options);
+    if let Err(refused) = &found {
+        // The terminal tells it too, so that a log that cannot be written is no matter.
+        let _ = note_refusal(folder, &refused.to_string());
+    }
+    let Some((results, path)) = found? else {
         clear_unfinished(folder)?;
         check_room(folder, false)?;
         say(&format!(
@@ -91,6 +96,22 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
             folder.display()
         ));
         return begin_locked(scene, folder, options, lock);
+    };
+    Ok(Start {
+        results,
+        path,
+        lock,
+    })
+}
+
+/// Results and load path as the newest checkpoint has them; none where there is none.
+fn from_checkpoint<'a>(
+    scene: &'a Scene,
+    folder: &Path,
+    options: Options,
+) -> Result<Option<(Results<'a>, LoadPath<'a>)>, ResultsError> {
+    let Some(checkpoint) = Checkpoint::newest(folder, scene)? else {
+        return Ok(None);
     };
     // Without its scene nothing says that a checkpoint belongs to this one.
     let recorded = ResultsFolder::open(folder)?;
@@ -111,9 +132,5 @@ pub fn go_on<'a>(scene: &'a Scene, folder: &Path, options: Options) -> Result<St
     }
     let step = checkpoint.header.step;
     say(&format!("going on after load step {step}\n"));
-    Ok(Start {
-        results,
-        path,
-        lock,
-    })
+    Ok(Some((results, path)))
 }

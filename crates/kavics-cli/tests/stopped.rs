@@ -46,6 +46,38 @@ fn a_signal_stops_a_run_which_goes_on_to_the_same_end() {
     }
 }
 
+/// Everything scaled by a hundred: the same events, at displacements that are not small.
+#[test]
+fn a_run_goes_on_with_the_warnings_that_it_had() {
+    let scene = EVENTS
+        .replace(
+            "tension = 0.01, shear = 0.02, bending = 0.02",
+            "tension = 1.0, shear = 2.0, bending = 2.0",
+        )
+        .replace("y = 1.0", "y = 100.0");
+    let place = Place::with(&scene);
+    let warnings = |name: &str| {
+        let results = ResultsFolder::open(&place.folder(name)).expect("results");
+        results.record().expect("a record").warnings
+    };
+    for (name, arguments) in [("one", ["--threads", "1"]), ("two", ["--threads", "2"])] {
+        let child = place.run_to(name, 2);
+        signal(&child, Signal::SIGTERM);
+        assert_eq!(ended(child).code(), Some(75));
+        let mut with = vec!["--resume"];
+        with.extend(arguments);
+        place.run(name, &with);
+        assert_eq!(warnings(name), warnings("whole"));
+    }
+    let told = warnings("whole");
+    let mark = "[large-displacements]";
+    let large = told.iter().find(|text| text.ends_with(mark));
+    assert!(
+        large.is_some_and(|text| text.starts_with("load steps 1 to ")),
+        "{told:?}"
+    );
+}
+
 #[test]
 fn a_run_that_is_stopped_again_and_again_comes_to_the_same_end() {
     let place = Place::with(SLIDING);

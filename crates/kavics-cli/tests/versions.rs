@@ -43,6 +43,23 @@ fn rewrite(folder: &Path, words: &str, others: &str) {
     }
 }
 
+/// The only line of the log about `what`, and that the others are still there.
+fn logged(folder: &Path, what: &str) -> String {
+    let log = fs::read_to_string(folder.join("log.ndjson")).expect("a log");
+    assert!(
+        log.lines()
+            .next()
+            .is_some_and(|line| line.contains("\"what\":\"opened\"")),
+        "{log}"
+    );
+    assert!(log.contains("\"what\":\"step\""), "{log}");
+    let about = format!("\"what\":\"{what}\",\"why\":");
+    let mut lines = log.lines().filter(|line| line.contains(&about));
+    let line = lines.next().unwrap_or_else(|| panic!("{log}"));
+    assert!(lines.next().is_none(), "{log}");
+    line.to_owned()
+}
+
 #[test]
 fn an_older_and_a_newer_checkpoint_are_refused_with_both_versions() {
     let place = Place::with(SLIDING);
@@ -65,6 +82,11 @@ fn an_older_and_a_newer_checkpoint_are_refused_with_both_versions() {
             "{said}"
         );
         assert!(broken_off::files(&folder) == before);
+        let log = logged(&folder, "refused");
+        assert!(
+            log.contains(&format!("a checkpoint of version {other}")),
+            "{log}"
+        );
         let results = ResultsFolder::open(&folder).expect("results");
         assert!(results.steps().expect("a table").len() >= 3);
     }
@@ -85,8 +107,8 @@ fn a_run_that_another_kavics_began_goes_on_and_says_so() {
         &format!("\"version\":\"{other}\""),
     );
     let said = place.assert_ends_alike("other", &[]);
-    assert!(
-        said.contains(&format!("the run began with kavics {other}")),
-        "{said}"
-    );
+    let says = format!("the run began with kavics {other}");
+    assert!(said.contains(&says), "{said}");
+    let log = logged(&place.folder("other"), "warning");
+    assert!(log.contains(&says), "{log}");
 }

@@ -208,6 +208,20 @@ fn floppy_modes_uncounted() {
 }
 
 #[test]
+fn large_displacements() {
+    let far = ["load.0.force={ y = -3.0 }"];
+    let said = run(LONE, "", &far);
+    said.expect(&[WarningKind::LargeDisplacements]);
+    // u = F/(E·s) with E = 1 and the dual length s = 2 of a grain at a side, over the branch of length 1.
+    let says = "load step 1: contact 0 displaced by 1.5 branch lengths, which is not small: ";
+    let told = said.record.iter().filter(|text| text.starts_with(says));
+    assert_eq!(told.count(), 1, "{:?}", said.record);
+    let near = run(LONE, "", &[]).record;
+    let mark = format!("[{}]", WarningKind::LargeDisplacements.name());
+    assert!(near.iter().all(|text| !text.ends_with(&mark)), "{near:?}");
+}
+
+#[test]
 fn load_uncovered() {
     let edge = "[[load]]\nname = \"edge\"\nedge = \"top\"\nnormal = [-0.001, -0.001]\n";
     let set = ["box.width=6.0", "stage.0.apply=[\"edge\"]"];

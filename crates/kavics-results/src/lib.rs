@@ -57,6 +57,7 @@ pub use grain_list::{grains_csv, read_grains, write_grains};
 pub use grains::GrainRow;
 pub use guard::is_guarded;
 pub use lock::Lock;
+pub use log::note_refusal;
 pub use modes::ModeRow;
 pub use packing_record::{CurveRecord, MassRecord, PackingRecord};
 pub use record::{RunRecord, RunState, SCHEMA_VERSION};

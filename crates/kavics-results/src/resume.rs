@@ -16,7 +16,7 @@ use crate::column::Column;
 use crate::encode::{array, array_after, schema};
 use crate::events::event_columns;
 use crate::folder::Columns;
-use crate::log::Log;
+use crate::log::{LOG, Log};
 use crate::results::{Before, Options, Results, rows};
 use crate::room::clear_leftovers;
 use crate::steps::{iterate_columns, rows_with_stress, step_columns};
@@ -66,8 +66,8 @@ impl<'a> Results<'a> {
         let without_moduli = numbers(&checkpoint.memory, WITHOUT_MODULI).iter();
         results.without_moduli = without_moduli.map(|&step| step as usize).collect();
         results.broken = checkpoint.header.broken;
-        let log = fs::read_to_string(folder.join("log.ndjson")).unwrap_or_default();
-        results.log = Log::resume(log, checkpoint.header.step);
+        let log = fs::read_to_string(folder.join(LOG)).unwrap_or_default();
+        results.log = Log::resume(log, checkpoint.header.step, &checkpoint.notes);
         results.make_folders()?;
         results.write_growing()?;
         // Last, so that nothing is taken away from a folder in which nothing can be written.

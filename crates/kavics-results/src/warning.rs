@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use kavics::equilibrium::{Breakdown, Warning};
+use kavics::equilibrium::{Breakdown, LargeMotion, Motion, Warning};
 use kavics::warning::WarningKind;
 
 /// Warnings of the load steps, each once with all its load steps.
@@ -103,10 +103,33 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::FloppyModesUncounted => {
             "solved by iteration, which counts no floppy modes".to_owned()
         }
+        Warning::LargeDisplacements(large) => large_text(large, up_to),
     };
     let plural = if steps.len() == 1 { "" } else { "s" };
     let what = format!("load step{plural} {}: {what}", ranges(steps));
     warning.kind().says(what)
+}
+
+fn large_text(LargeMotion { size, motion }: &LargeMotion, up_to: &str) -> String {
+    let size = three_digits(*size);
+    let what = match motion {
+        Motion::Branch(contact) => {
+            format!("contact {contact} displaced by {up_to}{size} branch lengths")
+        }
+        Motion::Along(contact) => {
+            format!("contact {contact} displaced along its side by {up_to}{size} side lengths")
+        }
+        Motion::Turn(grain) => format!("grain {grain} turned by {up_to}{size} radians"),
+    };
+    format!(
+        "{what}, which is not small: results hold for the geometry of the start; read them as those of the linear \
+         theory, scaled up from smaller loads"
+    )
+}
+
+/// A number in three digits.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 fn count(warning: &Warning) -> usize {
@@ -122,7 +145,7 @@ fn count(warning: &Warning) -> usize {
         | Warning::Separated
         | Warning::NoModes
         | Warning::FloppyModesUncounted => 1,
-        Warning::WorkError { .. } => 0,
+        Warning::WorkError { .. } | Warning::LargeDisplacements(_) => 0,
     }
 }
 
@@ -130,6 +153,7 @@ fn count(warning: &Warning) -> usize {
 fn size(warning: &Warning) -> f64 {
     match warning {
         Warning::WorkError { relative } => *relative,
+        Warning::LargeDisplacements(large) => large.size,
         _ => count(warning) as f64,
     }
 }
@@ -163,6 +187,8 @@ fn counted(count: usize, word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use kavics::ids::{ContactId, GrainId};
+
     use super::*;
 
     #[test]
@@ -184,5 +210,37 @@ mod tests {
                 "load step 7: work and energies known to within 3e-4 of the work [work-error]"
             ]
         );
+    }
+
+    #[test]
+    fn the_largest_of_large_motions_stands_with_all_load_steps_and_goes_through_numbers() {
+        let motions = [
+            Motion::Branch(ContactId(7)),
+            Motion::Turn(GrainId(3)),
+            Motion::Along(ContactId(9)),
+        ];
+        let says = [
+            "contact 7 displaced by up to 0.25 branch lengths",
+            "grain 3 turned by up to 0.25 radians",
+            "contact 9 displaced along its side by up to 0.25 side lengths",
+        ];
+        for (motion, says) in motions.into_iter().zip(says) {
+            let mut warnings = SolverWarnings::default();
+            for (step, size, motion) in [
+                (2, 0.11, Motion::Branch(ContactId(0))),
+                (3, 0.250_04, motion),
+                (4, 0.2, Motion::Turn(GrainId(1))),
+            ] {
+                let large = LargeMotion { size, motion };
+                warnings.add(step, &Warning::LargeDisplacements(large));
+            }
+            let again = SolverWarnings::of_numbers(&warnings.numbers());
+            for warnings in [warnings, again] {
+                let texts: Vec<String> = warnings.texts().collect();
+                assert_eq!(texts.len(), 1);
+                assert!(texts[0].starts_with(&format!("load steps 2 to 4: {says}, ")));
+                assert!(texts[0].ends_with("[large-displacements]"));
+            }
+        }
     }
 }

@@ -18,6 +18,8 @@ pub enum WarningKind {
     FloppyModesUncounted,
     /// Floppy modes that no load moves were held in place.
     FloppyModesHeld,
+    /// Displacements are not small against the branch lengths.
+    LargeDisplacements,
     /// No grain is met over a part of a loaded side.
     LoadUncovered,
     /// An iteration came near its limit.
@@ -60,13 +62,14 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::ActionUnused,
         Self::ComparedTable,
         Self::Chattered,
         Self::DualLengthCapped,
         Self::FloppyModesUncounted,
         Self::FloppyModesHeld,
+        Self::LargeDisplacements,
         Self::LoadUncovered,
         Self::ManyIterations,
         Self::NoModes,
@@ -97,6 +100,7 @@ impl WarningKind {
             Self::DualLengthCapped => "dual-length-capped",
             Self::FloppyModesUncounted => "floppy-modes-uncounted",
             Self::FloppyModesHeld => "floppy-modes-held",
+            Self::LargeDisplacements => "large-displacements",
             Self::LoadUncovered => "load-uncovered",
             Self::ManyIterations => "many-iterations",
             Self::NoModes => "no-modes",

@@ -390,3 +390,47 @@ control = \"auto\"
     let error = last.ledger_error().abs();
     assert!(error < 1e-3 * last.external_work, "{error}");
 }
+
+/// Apart from one another between a floor that holds them and a lid that they leave one by one: each is loaded otherwise.
+fn leaving(grains: usize) -> Scene {
+    let width = 3 * grains;
+    let text = format!(
+        "[box]\nwidth = {width}\nheight = 2.0\n[grains.listed]\nfile = \"Cargo.toml\"\n\
+         [contact.glue.cemented]\nstiffness.direct = {{ normal = 1.0, shear = 1.0, moment = 1.0 }}\n\
+         [contact.dry.cohesionless]\nstiffness.direct = {{ normal = 1.0, shear = 1.0 }}\nfriction = 0.5\n\
+         [side.bottom]\ncontact = \"glue\"\n[side.top]\ncontact = \"dry\"\n\
+         [[load]]\nname = \"press\"\nedge = \"top\"\nnormal = [-0.01, -0.02]\n\
+         [[stage]]\nfactors = [1.0]\n[equilibrium]\ncontrol = \"displacement\"\n"
+    );
+    // A file that is there; its grains come from here.
+    let row = |_: &Path, _: Option<usize>| {
+        Ok((0..grains)
+            .map(|k| [3.0 * k as f64 + 1.5, 1.0, 1.0])
+            .collect())
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    Scene::parse(&text, "row", folder, &row).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// One contact after the other opens, so that each grain asks for one more set of phases, of 200 that are tried.
+#[test]
+fn a_steered_equilibrium_found_near_the_limit_is_told() {
+    for (grains, is_near) in [(150, false), (170, true)] {
+        let end = leaving(grains).load_path().last().expect("an equilibrium");
+        let end = end.unwrap_or_else(|error| panic!("{error}"));
+        let told = Warning::ManyIterations {
+            iterations: grains + 1,
+            limit: 200,
+        };
+        assert!(
+            end.state
+                .contacts
+                .values()
+                .iter()
+                .filter(|c| !c.is_active())
+                .count()
+                == grains
+        );
+        assert_eq!(end.warnings.contains(&told), is_near, "{:?}", end.warnings);
+    }
+}

@@ -13,6 +13,7 @@ mod error;
 mod iterative;
 pub(crate) mod kept;
 mod kinematics;
+mod large_motion;
 mod linear;
 pub(crate) mod memory;
 mod search;
@@ -26,6 +27,7 @@ mod watch;
 
 pub use error::SolveError;
 pub use kinematics::{ALL_FREEDOMS, ContactFrame, FREEDOMS, Place, centre, contact_place};
+pub use large_motion::{LargeMotion, Motion, SMALL_MOTION};
 pub use memory::{Memory, MemoryColumn, MemoryError};
 pub use stability::{EigenMode, Stability, StabilitySummary, ZERO_EIGENVALUE, second_order_work};
 pub use tangent::relax;
@@ -320,6 +322,8 @@ pub enum Warning {
     NoModes,
     /// Solved by iteration, which does not count the floppy modes that a factor would hold.
     FloppyModesUncounted,
+    /// Displacements are not small against the branch lengths: results hold for the geometry of the start.
+    LargeDisplacements(LargeMotion),
 }
 
 impl Warning {
@@ -338,6 +342,7 @@ impl Warning {
             Self::ManyIterations { .. } => WarningKind::ManyIterations,
             Self::NoModes => WarningKind::NoModes,
             Self::FloppyModesUncounted => WarningKind::FloppyModesUncounted,
+            Self::LargeDisplacements(_) => WarningKind::LargeDisplacements,
         }
     }
 }

@@ -112,12 +112,13 @@ impl System<'_> {
             *load += growth.magnitude();
         }
         let mut share = 0.0;
-        for _ in 0..MOST_SETS {
+        for sets in 1..=MOST_SETS {
             let loose = self.leave_out_loose_pieces(&configuration.bonds, &ever);
             self.relax(&loose, &mut configuration.displacements);
             share = self.settle_steered(configuration, steering, share, progress)?;
             let groups = self.violations(configuration);
             let Some(group) = groups.first() else {
+                progress.longest.note(sets, MOST_SETS);
                 return Ok(share);
             };
             for &(contact, phase) in group {
@@ -152,6 +153,7 @@ impl System<'_> {
             let balanced =
                 progress.residual <= self.settings.tolerance || imbalance.largest <= self.noise();
             if balanced && equation.value.abs() <= AIMED * steering.aim.size() {
+                progress.longest.note(most - left, most);
                 return Ok(share);
             }
             let failure = not_converged(progress, &imbalance);

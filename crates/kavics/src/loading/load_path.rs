@@ -14,7 +14,7 @@ use crate::contact_law::Property;
 use crate::equilibrium::configuration::Failure;
 use crate::equilibrium::system::{System, is_set};
 use crate::equilibrium::{
-    Equilibrium, Iteration, Settings, SolveError, Stability, State, Warning, Watch,
+    Equilibrium, Iteration, LargeMotion, Settings, SolveError, Stability, State, Warning, Watch,
     second_order_work,
 };
 use crate::ids::{PerGrain, PerProperty};
@@ -446,6 +446,9 @@ impl<'a> LoadPath<'a> {
         if self.wants_modes() && equilibrium.stability.is_none() {
             warnings.push(Warning::NoModes);
         }
+        let (state, set_aside) = (&equilibrium.state, &equilibrium.set_aside);
+        let large = LargeMotion::of(&self.system, state, set_aside);
+        warnings.extend(large.map(Warning::LargeDisplacements));
         equilibrium
     }
 

@@ -7,7 +7,7 @@ use super::work::Account;
 use crate::equilibrium::configuration::{Longest, Progress};
 use crate::equilibrium::configuration_memory::{mode_code, mode_of};
 use crate::equilibrium::memory::{Memory, MemoryError, count};
-use crate::equilibrium::{Breakdown, Drive, Event, EventKind, Warning};
+use crate::equilibrium::{Breakdown, Drive, Event, EventKind, LargeMotion, Motion, Warning};
 use crate::ids::{ContactId, GrainId};
 
 impl LoadStep {
@@ -240,6 +240,11 @@ impl Warning {
             Self::ManyIterations { iterations, limit } => [9.0, *iterations as f64, *limit as f64],
             Self::NoModes => of(10.0, 0),
             Self::FloppyModesUncounted => of(11.0, 0),
+            Self::LargeDisplacements(LargeMotion { size, motion }) => match motion {
+                Motion::Branch(contact) => [12.0, *size, f64::from(contact.0)],
+                Motion::Along(contact) => [13.0, *size, f64::from(contact.0)],
+                Motion::Turn(grain) => [14.0, *size, f64::from(grain.0)],
+            },
         }
     }
 
@@ -268,6 +273,14 @@ impl Warning {
             },
             10 => Self::NoModes,
             11 => Self::FloppyModesUncounted,
+            12..=14 => Self::LargeDisplacements(LargeMotion {
+                size,
+                motion: match kind as i64 {
+                    12 => Motion::Branch(ContactId(other as u32)),
+                    13 => Motion::Along(ContactId(other as u32)),
+                    _ => Motion::Turn(GrainId(other as u32)),
+                },
+            }),
             _ => return None,
         })
     }
