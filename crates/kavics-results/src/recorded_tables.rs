@@ -43,10 +43,16 @@ impl RecordedTables {
         }
     }
 
-    /// The tables that every recorded load step has.
-    pub(crate) fn everywhere(&self) -> impl Iterator<Item = &str> {
-        let tables = self.tables.iter().map(String::as_str);
-        tables.filter(|table| *table != MODES)
+    /// The tables that every recorded load step has; names that are not known are passed over.
+    pub(crate) fn everywhere(&self) -> impl Iterator<Item = &'static str> {
+        let asked_for = [VOIDS, CRACKS].into_iter();
+        RECORDED
+            .into_iter()
+            .chain(asked_for.filter(|table| self.has(table)))
+    }
+
+    fn has(&self, table: &str) -> bool {
+        self.tables.iter().any(|known| known == table)
     }
 }
 
@@ -54,7 +60,7 @@ impl RecordedTables {
 const FOUND: &str = "static_indeterminacy";
 
 /// The load steps of each table that is there.
-type Found<'a> = BTreeMap<&'a str, BTreeSet<usize>>;
+type Found = BTreeMap<&'static str, BTreeSet<usize>>;
 
 impl ResultsFolder {
     /// The recorded load steps in order, 0 first. Of a run that has not ended these are all up to the last row of `steps`,
@@ -81,7 +87,7 @@ impl ResultsFolder {
                 return Err(missing(table, step));
             }
         }
-        if known.tables.iter().any(|table| table == MODES) {
+        if known.has(MODES) {
             let modes = self.steps_of(MODES)?;
             let mut with_modes = rows.iter().filter(|row| row.1).map(|row| row.0);
             let lost = with_modes.find(|step| wanted.contains(step) && !modes.contains(step));
@@ -146,7 +152,7 @@ impl ResultsFolder {
 /// The load steps that were recorded, by what the run tells and by what is there.
 fn wanted(
     known: &RecordedTables,
-    found: &Found<'_>,
+    found: &Found,
     state: RunState,
     last: Option<usize>,
 ) -> BTreeSet<usize> {
@@ -167,8 +173,16 @@ fn wanted(
         wanted.extend(last);
     }
     if state == RunState::Done || last.is_some() || !some.is_empty() {
+        let mut lost = None;
         let end = wanted.last().copied().max(last).unwrap_or(0);
-        wanted.extend((0..=end).step_by(known.every));
+        let every = (0..=end).step_by(known.every.max(1));
+        // The first that is missing is told, and no other.
+        let up_to_missing = every.map_while(|step| {
+            let is_told = lost.is_some();
+            lost = lost.or_else(|| (!some.contains(&step)).then_some(step));
+            (!is_told).then_some(step)
+        });
+        wanted.extend(up_to_missing);
     }
     wanted
 }
