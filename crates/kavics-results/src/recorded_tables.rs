@@ -173,16 +173,14 @@ fn wanted(
         wanted.extend(last);
     }
     if state == RunState::Done || last.is_some() || !some.is_empty() {
-        let mut lost = None;
         let end = wanted.last().copied().max(last).unwrap_or(0);
-        let every = (0..=end).step_by(known.every.max(1));
-        // The first that is missing is told, and no other.
-        let up_to_missing = every.map_while(|step| {
-            let is_told = lost.is_some();
-            lost = lost.or_else(|| (!some.contains(&step)).then_some(step));
-            (!is_told).then_some(step)
-        });
-        wanted.extend(up_to_missing);
+        for step in (0..=end).step_by(known.every.max(1)) {
+            wanted.insert(step);
+            // The first that is missing is told, and no other.
+            if !some.contains(&step) {
+                break;
+            }
+        }
     }
     wanted
 }
