@@ -172,7 +172,7 @@ fn wanted(
     if state != RunState::Running {
         wanted.extend(last);
     }
-    if state == RunState::Done || last.is_some() || !some.is_empty() {
+    if last.is_some() || !some.is_empty() {
         let end = wanted.last().copied().max(last).unwrap_or(0);
         for step in (0..=end).step_by(known.every.max(1)) {
             wanted.insert(step);
