@@ -114,7 +114,9 @@ fn from_checkpoint<'a>(
         return Ok(None);
     };
     // Without its scene nothing says that a checkpoint belongs to this one.
-    ResultsFolder::open(folder)?.scene()?;
+    let recorded = ResultsFolder::open(folder)?;
+    recorded.scene()?;
+    recorded.check_recorded(scene, checkpoint.header.step)?;
     for note in &checkpoint.notes {
         say(&format!("warning: {note}\n"));
     }

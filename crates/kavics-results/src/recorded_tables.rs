@@ -43,10 +43,16 @@ impl RecordedTables {
         }
     }
 
-    /// The tables that every recorded load step has.
-    pub(crate) fn everywhere(&self) -> impl Iterator<Item = &str> {
-        let tables = self.tables.iter().map(String::as_str);
-        tables.filter(|table| *table != MODES)
+    /// The tables that every recorded load step has; names that are not known are passed over.
+    pub(crate) fn everywhere(&self) -> impl Iterator<Item = &'static str> {
+        let asked_for = [VOIDS, CRACKS].into_iter();
+        RECORDED
+            .into_iter()
+            .chain(asked_for.filter(|table| self.has(table)))
+    }
+
+    fn has(&self, table: &str) -> bool {
+        self.tables.iter().any(|known| known == table)
     }
 }
 
@@ -54,7 +60,7 @@ impl RecordedTables {
 const FOUND: &str = "static_indeterminacy";
 
 /// The load steps of each table that is there.
-type Found<'a> = BTreeMap<&'a str, BTreeSet<usize>>;
+type Found = BTreeMap<&'static str, BTreeSet<usize>>;
 
 impl ResultsFolder {
     /// The recorded load steps in order, 0 first. Of a run that has not ended these are all up to the last row of `steps`,
@@ -81,7 +87,7 @@ impl ResultsFolder {
                 return Err(missing(table, step));
             }
         }
-        if known.tables.iter().any(|table| table == MODES) {
+        if known.has(MODES) {
             let modes = self.steps_of(MODES)?;
             let mut with_modes = rows.iter().filter(|row| row.1).map(|row| row.0);
             let lost = with_modes.find(|step| wanted.contains(step) && !modes.contains(step));
@@ -96,6 +102,21 @@ impl ResultsFolder {
     /// Those of [`ResultsFolder::recorded_steps`].
     pub fn check_whole(&self) -> Result<(), ResultsError> {
         self.recorded_steps().map(|_| ())
+    }
+
+    /// Checks the recorded tables of a run of `scene` up to a load step from which it is to go on: they are not written
+    /// again.
+    ///
+    /// # Errors
+    /// A table that is missing, damaged, or of another load step or run.
+    pub fn check_recorded(&self, scene: &Scene, last: usize) -> Result<(), ResultsError> {
+        let recorded = RecordedTables::of(scene);
+        for step in (0..=last).step_by(recorded.every) {
+            for table in recorded.everywhere() {
+                self.check_table(table, step)?;
+            }
+        }
+        Ok(())
     }
 
     /// The load steps of which a table is there.
@@ -131,7 +152,7 @@ impl ResultsFolder {
 /// The load steps that were recorded, by what the run tells and by what is there.
 fn wanted(
     known: &RecordedTables,
-    found: &Found<'_>,
+    found: &Found,
     state: RunState,
     last: Option<usize>,
 ) -> BTreeSet<usize> {
@@ -151,9 +172,15 @@ fn wanted(
     if state != RunState::Running {
         wanted.extend(last);
     }
-    if state == RunState::Done || last.is_some() || !some.is_empty() {
+    if last.is_some() || !some.is_empty() {
         let end = wanted.last().copied().max(last).unwrap_or(0);
-        wanted.extend((0..=end).step_by(known.every));
+        for step in (0..=end).step_by(known.every.max(1)) {
+            wanted.insert(step);
+            // The first that is missing is told, and no other.
+            if !some.contains(&step) {
+                break;
+            }
+        }
     }
     wanted
 }

@@ -15,9 +15,8 @@ use crate::checkpoint::{self, CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, 
 use crate::column::Column;
 use crate::encode::{array, array_after, schema};
 use crate::events::event_columns;
-use crate::folder::{Columns, ResultsFolder};
+use crate::folder::Columns;
 use crate::log::{LOG, Log};
-use crate::recorded_tables::RecordedTables;
 use crate::results::{Before, Options, Results, rows};
 use crate::room::clear_leftovers;
 use crate::steps::{iterate_columns, rows_with_stress, step_columns};
@@ -39,7 +38,7 @@ impl<'a> Results<'a> {
     /// Goes on with the results of a run that was broken off, from a checkpoint in the same folder.
     ///
     /// # Errors
-    /// A checkpoint whose tables have other columns; a table recorded up to there that is missing or damaged; files that cannot be read, written or removed.
+    /// A checkpoint whose tables have other columns; files that cannot be read, written or removed.
     pub fn resume(
         folder: &Path,
         scene: &'a Scene,
@@ -47,7 +46,6 @@ impl<'a> Results<'a> {
         checkpoint: &Checkpoint,
     ) -> Result<Self, ResultsError> {
         let mut results = Self::new(folder, scene, options);
-        results.check_recorded(checkpoint.header.step)?;
         let before = |table, names: Vec<String>| earlier(folder, checkpoint, table, &names);
         results.before = Before {
             steps: before("steps", names(&step_columns()))?,
@@ -70,18 +68,6 @@ impl<'a> Results<'a> {
         // Last, so that nothing is taken away from a folder in which nothing can be written.
         clear_leftovers(folder, |step| results.is_recorded(step))?;
         Ok(results)
-    }
-
-    /// Checks the recorded tables of load steps up to `last`, which are not written again: the last one of a run that ended
-    /// nowhere is recorded in addition, and may be missing.
-    fn check_recorded(&self, last: usize) -> Result<(), ResultsError> {
-        let results = ResultsFolder::open(&self.folder)?;
-        for step in (0..=last).filter(|step| self.is_recorded(*step)) {
-            for table in RecordedTables::of(self.scene).everywhere() {
-                results.check_table(table, step)?;
-            }
-        }
-        Ok(())
     }
 
     /// Whether it is time for a checkpoint: `apart` after the last one, and seldom enough to cost little; with no time

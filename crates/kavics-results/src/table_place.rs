@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 use parquet::file::statistics::Statistics;
 
 use crate::ResultsError;
@@ -82,7 +82,7 @@ fn columns<'m>(
     let all = metadata
         .row_groups()
         .iter()
-        .flat_map(|group| group.columns());
+        .flat_map(RowGroupMetaData::columns);
     all.filter(move |column| column.column_path().string() == name)
 }
 

@@ -245,17 +245,22 @@ fn links_that_lead_out_of_the_results_are_not_followed() {
 }
 
 #[test]
-fn a_step_that_is_not_whole_is_told_and_not_listed() {
+fn a_recorded_table_that_is_missing_is_told() {
     let served = Served::new();
-    fs::remove_file(served.folder().join("sides/000005.parquet")).expect("a file of the run");
-    let record = served.get("/data/run.json").text();
-    assert!(record.contains("\"recorded\":[0,1,2,3,4]"), "{record}");
+    let lost = "sides/000005.parquet";
+    fs::remove_file(served.folder().join(lost)).expect("a file of the run");
+    let record = served.get("/data/run.json");
+    assert_eq!(record.status, 500);
+    let text = record.text();
+    assert!(text.contains(&format!("{lost} is missing")), "{text}");
     let answer = served.get("/data/sides/5");
     assert_eq!(answer.status, 404);
     assert_eq!(
         answer.text(),
         "there is no whole table \"sides\" of load step 5\n"
     );
+    let refused = Server::bind(&served.folder(), 0).expect_err("a refusal");
+    assert!(refused.to_string().contains(lost), "{refused}");
 }
 
 #[test]

@@ -103,14 +103,14 @@ fn solving(file: &EquilibriumFile, checker: &mut Checker) -> Option<(Settings, B
         default: default.tie_tolerance,
         bound: Bound::NonNegative,
     };
-    let ties = share(ties, MOST_TIES, checker);
+    let ties = share(&ties, MOST_TIES, checker);
     let work = Share {
         key: "work_tolerance",
         number: file.work_tolerance.as_ref(),
         default: default.work_tolerance,
         bound: Bound::Positive,
     };
-    let work = share(work, MOST_WORK, checker);
+    let work = share(&work, MOST_WORK, checker);
     let iteration = file
         .iteration
         .as_ref()
@@ -191,15 +191,15 @@ struct Share<'a> {
     bound: Bound,
 }
 
-fn share(share: Share<'_>, most: f64, checker: &mut Checker) -> Option<f64> {
-    let Some(number) = share.number else {
-        return Some(share.default);
+fn share(given: &Share<'_>, most: f64, checker: &mut Checker) -> Option<f64> {
+    let Some(number) = given.number else {
+        return Some(given.default);
     };
-    let value = checker.number(number, share.key, Dimension::Number, share.bound)?;
+    let value = checker.number(number, given.key, Dimension::Number, given.bound)?;
     if value <= most {
         return Some(value);
     }
-    let problem = format!("`{}` cannot be {value:?}", share.key);
+    let problem = format!("`{}` cannot be {value:?}", given.key);
     let expected = format!("expected at most {most}; it is a share");
     checker.push(Problem::at(&number.span, problem, expected));
     None
