@@ -121,17 +121,21 @@ pub fn check_same(folder: &Path, scene: &Scene) -> Result<(), ResultsError> {
     if ran == scene.text {
         return Ok(());
     }
-    let line = |text: &str, number: usize| {
-        let line = text.lines().nth(number).map(str::trim);
-        line.unwrap_or("the end of the scene").to_owned()
-    };
     let pairs = ran.lines().zip(scene.text.lines());
     let same = pairs.take_while(|(a, b)| a == b).count();
+    let line = |text: &str| {
+        let mut differing = text.lines().enumerate().skip(same);
+        let told = differing.find(|(_, line)| !line.trim().is_empty());
+        let end = || (text.lines().count(), "the end of the scene");
+        let (number, line) = told.unwrap_or_else(end);
+        (number + 1, line.trim().to_owned())
+    };
+    let ((line, ran), (_, now)) = (line(&ran), line(&scene.text));
     Err(ResultsError::SceneChanged {
         folder: folder.to_owned(),
-        line: same + 1,
-        ran: line(&ran, same),
-        now: line(&scene.text, same),
+        line,
+        ran,
+        now,
     })
 }
 

@@ -189,7 +189,8 @@ impl Columns {
         read: impl Fn(&'a dyn Array) -> Option<Vec<T>>,
     ) -> Result<Vec<T>, ResultsError> {
         if self.schema.field_with_name(column).is_err() {
-            if let Some(unchanging) = &self.unchanging {
+            let has_it = |other: &Self| other.schema.field_with_name(column).is_ok();
+            if let Some(unchanging) = self.unchanging.as_deref().filter(|other| has_it(other)) {
                 return unchanging.gather(column, wanted, read);
             }
             return Err(ResultsError::NoColumn {

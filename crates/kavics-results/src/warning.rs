@@ -78,9 +78,10 @@ fn warning_text(warning: &Warning, steps: &[usize]) -> String {
         Warning::SecondOrderWork { .. } => {
             format!("second-order work negative in {}", count("contact"))
         }
-        Warning::WorkError { relative } => {
+        Warning::WorkError { relative } if *relative < 1.0 => {
             format!("work and energies known to within {relative:.0e} of the work")
         }
+        Warning::WorkError { .. } => "work and energies no larger than their error".to_owned(),
         Warning::Separated => {
             "separated: the loads fell to zero; what would follow is left out".to_owned()
         }

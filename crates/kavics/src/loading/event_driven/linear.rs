@@ -342,16 +342,18 @@ impl Walk<'_, '_> {
         false
     }
 
-    /// Why there is no equilibrium at the present factor with the bonds as they are, by the search for one.
+    /// Why there is no equilibrium at the present factor, or beyond it, with the bonds as they are, by the search for one.
     pub fn failure_from_here(&mut self) -> Failure {
-        let action = self.course.network.acting.at(self.program, self.x);
-        let mut trial = self.point.configuration.clone();
-        let progress = &mut self.way.progress;
-        self.system.respond(&mut trial);
-        let searched = self.system.equilibrate(&mut trial, &action, progress);
-        searched
-            .err()
-            .unwrap_or_else(|| self.not_converged(BodyId(0)))
+        for x in [self.x, self.run.direction * self.farthest] {
+            let action = self.course.network.acting.at(self.program, x);
+            let mut trial = self.point.configuration.clone();
+            let progress = &mut self.way.progress;
+            self.system.respond(&mut trial);
+            if let Err(failure) = self.system.equilibrate(&mut trial, &action, progress) {
+                return failure;
+            }
+        }
+        self.not_converged(BodyId(0))
     }
 
     /// The equilibrium at the present factor becomes the point; answers why there is not more.
