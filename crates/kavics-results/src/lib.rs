@@ -11,6 +11,7 @@ mod checkpoint_frame;
 mod checksums;
 mod chosen_columns;
 mod column;
+mod columns;
 mod contacts;
 mod cracks;
 mod encode;
@@ -47,12 +48,13 @@ pub use checkpoint::{
     CHECKPOINT_VERSION, Checkpoint, CheckpointHeader, check_same, clear_checkpoints,
 };
 pub use column::{Column, Unit};
+pub use columns::{Columns, TableHead};
 pub use contacts::ContactRow;
 pub use cracks::CrackRow;
 pub use encode::{publish, publish_by};
 pub use error::ResultsError;
 pub use events::EventRow;
-pub use folder::{Columns, ResultsFolder, TableHead};
+pub use folder::ResultsFolder;
 pub use grain_list::{grains_csv, read_grains, write_grains};
 pub use grains::GrainRow;
 pub use guard::is_guarded;

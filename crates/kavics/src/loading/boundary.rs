@@ -83,10 +83,10 @@ impl LoadPath<'_> {
         let of = |value| count(PLACE, value);
         self.step = of(step)?;
         self.next = (of(stage)?, of(place)?);
-        let (load_factor, closing) = match memory.list::<f64>(LAST)?.unwrap_or_default() {
-            &[load_factor, error, largest] => (load_factor, Closing { error, largest }),
+        let (load_factor, closing) = match *memory.list::<f64>(LAST)?.unwrap_or_default() {
+            [load_factor, error, largest] => (load_factor, Closing { error, largest }),
             // Of a version that did not look whether the ledger closes.
-            &[load_factor] => (load_factor, Closing::default()),
+            [load_factor] => (load_factor, Closing::default()),
             _ => return Err(MemoryError::unfit(LAST)),
         };
         self.last = Last {
