@@ -2,16 +2,19 @@ import assert from "node:assert/strict";
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { drawn, launch, open, quiet, results, scratch, serve } from "./browser.mjs";
+import { copy, drawn, launch, open, quiet, results, scratch, serve } from "./browser.mjs";
 
 const KINDS = ["grains", "contacts", "sides"];
+const TABLES = ["steps.parquet", "actions.parquet", "events.parquet"];
 let browser, server, whole, growing;
 
 before(async () => {
+  const begun = copy(results("block-32", undefined, "--set", "stage.0.factors=[1.0]"), "begun.results");
   whole = results("block-32");
   growing = join(scratch, "growing.results");
   mkdirSync(growing);
-  for (const name of ["scene.toml", "steps.parquet", "actions.parquet", "events.parquet"]) cpSync(join(whole, name), join(growing, name));
+  cpSync(join(whole, "scene.toml"), join(growing, "scene.toml"));
+  for (const name of TABLES) cpSync(join(begun, name), join(growing, name));
   for (const kind of KINDS) mkdirSync(join(growing, kind));
   for (const step of [0, 1]) addStep(step);
   tellState("running");
@@ -35,6 +38,8 @@ test("a run that is watched gains load steps, and the page goes with them from t
   await page.waitForFunction(() => document.querySelector(".slider").max === "3");
   await quiet(page);
   await drawn(page, 0);
+  for (const step of [4, 5]) addStep(step);
+  for (const name of TABLES) cpSync(join(whole, name), join(growing, name));
   tellState("done");
   await page.locator(".state", { hasText: "done" }).waitFor();
   const asked = page.asked.length;

@@ -172,7 +172,9 @@ fn wanted(
     if state != RunState::Running {
         wanted.extend(last);
     }
-    if last.is_some() || !some.is_empty() {
+    // A run that has only begun may be writing its first tables.
+    let has_some = state != RunState::Running && !some.is_empty();
+    if last.is_some() || !wanted.is_empty() || has_some {
         let end = wanted.last().copied().max(last).unwrap_or(0);
         for step in (0..=end).step_by(known.every.max(1)) {
             wanted.insert(step);

@@ -3,8 +3,9 @@
 use super::bond::Bond;
 use super::configuration::{Action, Configuration, Failure, Progress};
 use super::kinematics::ALL_FREEDOMS;
+use super::steered::{moved_displacements, product};
 use super::system::{Imbalance, System};
-use super::{Displacement, Iterate, Iteration, Load};
+use super::{Displacement, Freedom, Iterate, Iteration, Load};
 use crate::contact_law::{ContactForce, Matrix, RelativeDisplacement};
 use crate::ids::{BodyId, Id, PerBody};
 
@@ -159,8 +160,28 @@ impl System<'_> {
                 linear_force(bond, v, &self.stiffness_of(bond, Iteration::Secant))
             });
         let imbalance = self.imbalance_of(forces, &action.loads);
-        self.moved_force = imbalance.force;
+        let by_moves = self.force_by_moves(configuration, &action.moved);
+        self.moved_force = imbalance.force.max(by_moves);
         imbalance.unbalanced
+    }
+
+    /// Largest contact force if only the moved bodies had moved, and contacts were linear.
+    pub fn force_by_moves(
+        &self,
+        configuration: &Configuration,
+        moved: &[(BodyId, Freedom, f64)],
+    ) -> f64 {
+        if moved.iter().all(|moved| moved.2 == 0.0) {
+            return 0.0;
+        }
+        let u = moved_displacements(moved, self.assembly.body_count());
+        let contacts = self.frames.iter().zip(configuration.bonds.values());
+        let sizes = contacts.map(|(frame, bond)| {
+            let v = frame.relative_displacement(u[frame.first], u[frame.second]);
+            let force = product(&self.stiffness_of(bond, Iteration::Secant), v);
+            force.normal.hypot(force.shear)
+        });
+        sizes.fold(0.0, f64::max)
     }
 
     /// Whether nothing acts and what is left of the forces is rounding.

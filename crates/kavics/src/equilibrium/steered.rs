@@ -237,7 +237,7 @@ impl System<'_> {
         if growth.moved.is_empty() {
             return pattern;
         }
-        let moved = moved_displacements(growth, self.assembly.body_count());
+        let moved = moved_displacements(&growth.moved, self.assembly.body_count());
         for (frame, bond) in self.frames.iter().zip(configuration.bonds.values()) {
             let v = frame.relative_displacement(moved[frame.first], moved[frame.second]);
             if bond.is_active() && v != RelativeDisplacement::default() {
@@ -270,7 +270,7 @@ impl System<'_> {
             return Err(failure);
         }
         let mut grown = Configuration {
-            displacements: moved_displacements(growth, self.assembly.body_count()),
+            displacements: moved_displacements(&growth.moved, self.assembly.body_count()),
             bonds: PerContact::default(),
         };
         self.advance(&mut grown, &rate);
@@ -307,12 +307,16 @@ impl System<'_> {
     }
 }
 
-fn moved_displacements(growth: &Action, bodies: usize) -> PerBody<Displacement> {
-    let mut moved = PerBody::filled(Displacement::default(), bodies);
-    for &(body, freedom, value) in &growth.moved {
-        *moved[body].component_mut(freedom) = value;
+/// Displacements of the moved freedoms alone.
+pub(super) fn moved_displacements(
+    moved: &[(BodyId, Freedom, f64)],
+    bodies: usize,
+) -> PerBody<Displacement> {
+    let mut displacements = PerBody::filled(Displacement::default(), bodies);
+    for &(body, freedom, value) in moved {
+        *displacements[body].component_mut(freedom) = value;
     }
-    moved
+    displacements
 }
 
 /// Σ slope·growth over the moved freedoms.
@@ -324,7 +328,8 @@ fn moved_work(slope: &PerBody<Load>, growth: &Action) -> f64 {
         .sum()
 }
 
-fn product(k: &Matrix, v: RelativeDisplacement) -> ContactForce {
+/// Force of a linear contact.
+pub(super) fn product(k: &Matrix, v: RelativeDisplacement) -> ContactForce {
     let [normal, shear, moment] =
         k.map(|row| row[0] * v.normal + row[1] * v.shear + row[2] * v.rotation);
     ContactForce {

@@ -499,7 +499,8 @@ pub(super) fn check(system: &System<'_>, point: &Point, way: &mut Way) -> Result
         .map(|(_, warning)| warning)
         .collect();
     let relative = way.account.relative_error();
-    if relative > system.settings.work_tolerance {
+    let is_rounding = way.account.error <= work::rounding(system, &point.configuration);
+    if relative > system.settings.work_tolerance && !is_rounding {
         way.warnings.push(Warning::WorkError { relative });
     }
     warn_of_solver(system, way);

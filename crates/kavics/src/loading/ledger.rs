@@ -24,12 +24,16 @@ pub struct Closing {
 }
 
 impl Closing {
-    /// The same at the next equilibrium, and what was left open on the way there, over the largest term.
-    pub fn at(self, energy: &Energy) -> (Self, f64) {
+    /// The same at the next equilibrium, and what was left open on the way there beyond `rounding`, over the largest term.
+    pub fn at(self, energy: &Energy, rounding: f64) -> (Self, f64) {
         let sizes = energy.terms().into_iter().map(f64::abs);
         let (error, largest) = (energy.ledger_error(), sizes.fold(self.largest, f64::max));
         let open = (error - self.error).abs();
-        let relative = if open == 0.0 { 0.0 } else { open / largest };
+        let relative = if open <= rounding {
+            0.0
+        } else {
+            open / largest
+        };
         (Self { error, largest }, relative)
     }
 }

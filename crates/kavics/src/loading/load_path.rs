@@ -337,8 +337,10 @@ impl<'a> LoadPath<'a> {
 
     /// The path has come to an equilibrium.
     pub(super) fn come_to(&mut self, mut equilibrium: Equilibrium) {
-        let (closing, open) = self.last.closing.at(&equilibrium.energy);
-        let is_constant = !work::depends_on_state(&self.system, &self.point.configuration);
+        let configuration = &self.point.configuration;
+        let rounding = work::rounding(&self.system, configuration);
+        let (closing, open) = self.last.closing.at(&equilibrium.energy, rounding);
+        let is_constant = !work::depends_on_state(&self.system, configuration);
         // With constant stiffness no more than rounding is left open.
         let allowed = self.system.settings.work_tolerance.max(OPEN);
         if is_constant && open > allowed {

@@ -135,6 +135,13 @@ pub fn depends_on_state(system: &System<'_>, configuration: &Configuration) -> b
     })
 }
 
+/// Work below this is rounding, `[force·length]`: forces that are, on the largest displacement.
+pub fn rounding(system: &System<'_>, configuration: &Configuration) -> f64 {
+    let displacements = configuration.displacements.values().iter();
+    let lengths = displacements.map(|u| u.x.hypot(u.y));
+    system.noise() * lengths.fold(0.0, f64::max)
+}
+
 /// The work on a way, to the wanted tolerance where that can be reached; the account tells what is left.
 pub fn along(system: &mut System<'_>, stretch: &Stretch<'_>, account: &mut Account) -> Work {
     let ends = [stretch.before, stretch.after]

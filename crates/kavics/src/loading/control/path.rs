@@ -6,7 +6,7 @@ use crate::equilibrium::configuration::{Action, Failure};
 use crate::equilibrium::{Load, SolveError, Warning};
 use crate::loading::advance::{self, Along, Point, Way};
 use crate::loading::load_path::LoadStep;
-use crate::loading::{LoadPath, Program};
+use crate::loading::{LoadPath, Program, work};
 
 /// A softening bond with less than this share of its force left is broken, where the path lets it.
 const WORN: f64 = 1e-3;
@@ -128,7 +128,8 @@ impl LoadPath<'_> {
 
     /// What the ledger leaves open between two points.
     pub(super) fn left_open(&self, before: &Point, after: &Point) -> f64 {
-        let rounding = 1e-12 * self.point.energy.external_work.abs();
+        let rounding = 1e-12 * self.point.energy.external_work.abs()
+            + work::rounding(&self.system, &after.configuration);
         let open = after.energy.ledger_error() - before.energy.ledger_error();
         (open.abs() - rounding).max(0.0)
     }

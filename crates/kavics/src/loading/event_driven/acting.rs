@@ -53,6 +53,15 @@ impl Acting {
             && self.moved.iter().all(|moved| moved.2[0] == 0.0)
     }
 
+    /// The moved freedoms, as far as they go up to a factor of this size.
+    pub fn largest_moves(&self, farthest: f64) -> Vec<(BodyId, Freedom, f64)> {
+        let moved = self.moved.iter();
+        let value = |[constant, rate]: [f64; 2]| constant.abs() + farthest * rate.abs();
+        moved
+            .map(|&(body, freedom, line)| (body, freedom, value(line)))
+            .collect()
+    }
+
     /// The load factor at x.
     pub fn load_factor(&self, x: f64) -> f64 {
         self.load_factor[0] + x * self.load_factor[1]

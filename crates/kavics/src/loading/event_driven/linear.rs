@@ -196,6 +196,9 @@ impl Walk<'_, '_> {
     /// Brings a course into balance. What is small beside the forces up to one factor need not be so beside those up to a
     /// farther one.
     fn begin(&mut self, beginning: Beginning) -> Result<(), Failure> {
+        let moved = self.course.network.acting.largest_moves(self.farthest);
+        let configuration = &self.point.configuration;
+        self.system.moved_force = self.system.force_by_moves(configuration, &moved);
         if beginning == Beginning::Farther && !self.balance(MOST_SOLVES) {
             self.course.events = usize::MAX;
             return Err(self.failure_from_here());
