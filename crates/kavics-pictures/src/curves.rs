@@ -48,7 +48,7 @@ struct Quantity {
 /// Draws curves.
 ///
 /// # Errors
-/// Results that cannot be read; a column, load or move that is not there.
+/// Results that cannot be read; a column, load or move that is not there; a column without a value.
 pub fn draw_curves(
     folder: &ResultsFolder,
     request: &CurveRequest,
@@ -159,10 +159,16 @@ impl Quantity {
     fn of_steps(table: &Columns, column: &str) -> Result<Self, PictureError> {
         check_column(table, "steps", column)?;
         let values = steps(table)?.into_iter().zip(table.numbers(column)?);
+        let values: BTreeMap<usize, f64> = values.collect();
+        if !values.is_empty() && values.values().all(|value| value.is_nan()) {
+            return Err(PictureError::NoValue {
+                column: column.to_owned(),
+            });
+        }
         Ok(Self {
             name: column.replace('_', " "),
             unit: table.unit(column).unwrap_or_default().to_owned(),
-            values: values.collect(),
+            values,
         })
     }
 

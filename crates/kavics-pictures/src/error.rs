@@ -66,6 +66,14 @@ pub enum PictureError {
         /// The longest, in extents of the assembly.
         extents: f64,
     },
+    /// A column has no value at any load step.
+    #[error(
+        "\"{column}\" has no value at any load step: the scene did not ask for it, or it does not exist there"
+    )]
+    NoValue {
+        /// The column.
+        column: String,
+    },
     /// A picture of pixels is too large, or has no pixel.
     #[error(
         "a picture of {width} x {height} pixels cannot be made; at least 1, at most {most} each way"
@@ -116,6 +124,7 @@ impl PictureError {
         match self {
             Self::NotRecorded { .. }
             | Self::NoColumn { .. }
+            | Self::NoValue { .. }
             | Self::NoAction { .. }
             | Self::TooFar { .. }
             | Self::TooLarge { .. } => true,

@@ -297,6 +297,11 @@ fn a_curve_that_is_not_there_is_named() {
         message(&action),
         "no load or move is called \"compresion\"; did you mean \"compression\"?"
     );
+    let without_values = message(&curves(&["bulk_modulus"], "step"));
+    assert!(
+        without_values.starts_with("\"bulk_modulus\" has no value at any load step"),
+        "{without_values}"
+    );
 }
 
 #[test]
