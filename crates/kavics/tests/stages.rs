@@ -103,7 +103,7 @@ fn written(stages: &[(Vec<bool>, Vec<f64>)]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn as_long_as_nothing_breaks_all_settings_agree(

@@ -104,6 +104,12 @@ impl LoadStep {
             .all(|from| from == self.load_factor[0])
     }
 
+    /// Whether no factor changes by more than rounding.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let mut ends = self.from.iter().zip(&self.to);
+        ends.all(|(from, to)| (to - from).abs() <= 1e-12 * from.abs().max(to.abs()))
+    }
+
     /// The factors at which the stage's actions are zero.
     pub(super) fn unloaded(&self, program: &Program) -> Vec<f64> {
         let mut factors = self.from.clone();

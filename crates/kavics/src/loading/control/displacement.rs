@@ -22,17 +22,25 @@ impl LoadPath<'_> {
         if self.steered.taken.1 == 0 {
             return load_step.clone();
         }
-        let by = load_step.load_factor[1] - counted_to;
+        let wanted = load_step.load_factor[1];
+        // As long as all is elastic, the factors of the stage to the last digit.
+        let onward = |from: f64| {
+            if from == counted_to {
+                wanted
+            } else {
+                from + (wanted - counted_to)
+            }
+        };
         let mut to = load_step.from.clone();
         for &action in &self.program.stages[load_step.stage].actions {
-            to[action] += by;
+            to[action] = onward(to[action]);
         }
         let from = load_step.load_factor[0];
         LoadStep {
             stage: load_step.stage,
             from: load_step.from.clone(),
             to,
-            load_factor: [from, from + by],
+            load_factor: [from, onward(from)],
         }
     }
 

@@ -35,8 +35,9 @@ impl LoadPath<'_> {
         }
         let growth = self.growth(&load_step);
         // Moves are displacements already, and what does not grow cannot be steered.
-        let steerable = is_loading(&growth)
+        let grows = is_loading(&growth)
             || self.steered.control.control != Control::Displacement && !is_still(&growth);
+        let steerable = grows && !load_step.is_at_rest();
         if !steerable {
             self.take(&load_step);
             return;
