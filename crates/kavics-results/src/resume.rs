@@ -24,10 +24,10 @@ use crate::warning::SolverWarnings;
 
 /// Checkpoints take at most one part in so many of the time; more in the first seconds, when that is little.
 const SHARE: u32 = 20;
-const FIRST_SHARE: u32 = 6;
+const FIRST_SHARE: u32 = 3;
 const FIRST: Duration = Duration::from_secs(5);
 /// At most one part in so many of the time so far is lost, nor more than this.
-const LOST: u32 = 25;
+const LOST: u32 = 60;
 const MOST_LOST: Duration = Duration::from_secs(2);
 
 /// What results remember beside their rows.
